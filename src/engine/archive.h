@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/parameters.h"
+
+namespace dmf::engine {
+
+/// Writes plain values into a string of bytes, or reads them back in the same order: one `archive(...)`
+/// function of a class serves both ways, so that they can't drift apart. Native byte order. Integrity is the
+/// caller's business (a checksum around the whole); reading past the end is refused.
+class Archive {
+ public:
+  /// For writing.
+  Archive() : reading_(false) {}
+  /// For reading.
+  explicit Archive(std::string bytes) : reading_(true), bytes_(std::move(bytes)) {}
+
+  bool reading() const { return reading_; }
+  const std::string& bytes() const { return bytes_; }
+  bool at_end() const { return position_ == bytes_.size(); }
+
+  template <class T>
+  void operator()(T& value) {
+    static_assert(std::is_trivially_copyable<T>::value, "say how to archive this type");
+    raw(&value, sizeof value);
+  }
+  template <class T, class Allocator>
+  void operator()(std::vector<T, Allocator>& values) {
+    static_assert(std::is_trivially_copyable<T>::value, "say how to archive this type");
+    std::uint64_t count = values.size();
+    (*this)(count);
+    if (reading_) {
+      if (count > (bytes_.size() - position_) / sizeof(T)) throw InvalidInput("saved state: ends early");
+      values.resize(count);
+    }
+    raw(values.data(), count * sizeof(T));
+  }
+
+ private:
+  void raw(void* data, std::size_t size) {
+    if (size == 0) return;
+    if (reading_) {
+      if (size > bytes_.size() - position_) throw InvalidInput("saved state: ends early");
+      std::memcpy(data, bytes_.data() + position_, size);
+      position_ += size;
+    } else {
+      bytes_.append(static_cast<const char*>(data), size);
+    }
+  }
+
+  bool reading_;
+  std::string bytes_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace dmf::engine

@@ -1,0 +1,30 @@
+#include "engine/beads.h"
+
+namespace dmf::engine {
+
+void Beads::add(const Record& at, const Record& moving, std::uint32_t bead_id) {
+  position.push_back(at);
+  predicted.push_back(moving);
+  velocity.push_back(moving);
+  force.push_back({});
+  listed.push_back(at);
+  id.push_back(bead_id);
+}
+
+void Beads::reorder(const std::vector<std::uint32_t>& order) {
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(order.size());
+  scratch_.resize(order.size());
+  for (AlignedVector<Record>* array : {&position, &predicted, &velocity, &force, &listed}) {
+    const Record* from = array->data();
+    Record* to = scratch_.data();
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = from[order[k]];
+    array->swap(scratch_);
+    scratch_.resize(order.size());
+  }
+  scratch_id_.resize(order.size());
+  for (std::ptrdiff_t k = 0; k < count; ++k) scratch_id_[k] = id[order[k]];
+  id.swap(scratch_id_);
+}
+
+}  // namespace dmf::engine

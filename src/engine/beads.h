@@ -1,0 +1,64 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace dmf::engine {
+
+/// 16 bytes that a kernel loads at once.
+struct alignas(16) Record {
+  float x = 0, y = 0, z = 0;
+  float w = 0;
+};
+
+/// Starts vectors on a cache line, so that no record straddles two.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+  template <class U>
+  bool operator==(const CacheLineAllocator<U>&) const {
+    return true;
+  }
+  template <class U>
+  bool operator!=(const CacheLineAllocator<U>&) const {
+    return false;
+  }
+};
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+/// The moving beads of the liquid, sorted by cell at every list build. Ids persist, indices do not.
+///
+/// Which pass reads and writes what (so that no two threads meet):
+///   drift    writes position, velocity (at half step), predicted.xyz
+///   density  reads position; writes predicted.w (rho) of its own bead
+///   force    reads position, predicted; writes force of its own bead
+///   finish   reads force; writes velocity
+struct Beads {
+  AlignedVector<Record> position;   ///< x, y, z; w: bits of the bead's noise key of this step
+  AlignedVector<Record> predicted;  ///< velocity that the pair forces see (Groot and Warren); w: density rho
+  AlignedVector<Record> velocity;   ///< true velocity at the end of a step; w unused
+  AlignedVector<Record> force;      ///< at the end of a step; w unused
+  AlignedVector<Record> listed;     ///< position when the neighbour list was built; w unused
+  std::vector<std::uint32_t> id;
+
+  std::size_t size() const { return id.size(); }
+
+  /// Appends a bead at rest forces. Call `Pairs::invalidate()` afterwards.
+  void add(const Record& at, const Record& moving, std::uint32_t bead_id);
+
+  /// Reorders all arrays: the bead at order[k] moves to k. Drops beads whose index is missing from `order`.
+  void reorder(const std::vector<std::uint32_t>& order);
+
+ private:
+  AlignedVector<Record> scratch_;
+  std::vector<std::uint32_t> scratch_id_;
+};
+
+}  // namespace dmf::engine

@@ -1,0 +1,50 @@
+#include "engine/forces.h"
+
+#include "engine/kernels/reference.h"
+#include "engine/simulation.h"
+
+namespace dmf::engine {
+
+std::vector<std::string> available_kernels() {
+  std::vector<std::string> names = vector_kernels();
+  names.push_back("reference");
+  return names;
+}
+
+Forces::Forces(const Parameters& parameters, const std::string& kernel)
+    : kernels_(kernel == "reference" ? reference_kernels() : select_kernels(kernel)),
+      kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
+      constants_{} {
+  constants_.law = liquid_law(parameters.liquid, parameters.time_step);
+  constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!parameters.domain.periodic(axis)) continue;
+    constants_.period[axis] = static_cast<float>(parameters.domain.size()[axis]);
+    constants_.inverse_period[axis] = 1.f / constants_.period[axis];
+  }
+}
+
+PairPass Forces::pass_over(Beads& beads, const PlaneWall& wall) const {
+  PairPass pass = constants_;
+  pass.position = beads.position.data();
+  pass.predicted = beads.predicted.data();
+  pass.force = beads.force.data();
+  pass.wall = wall.beads().data();
+  return pass;
+}
+
+void Forces::density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
+  const PairPass pass = pass_over(beads, wall);
+  std::vector<NeighbourBlock>& blocks = pairs.blocks();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t b = 0; b < blocks.size(); ++b) kernels_.density(pass, blocks[b]);
+}
+
+void Forces::force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
+  const PairPass pass = pass_over(beads, wall);
+  const std::vector<NeighbourBlock>& blocks = pairs.blocks();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t b = 0; b < blocks.size(); ++b) kernels_.force(pass, blocks[b]);
+}
+
+}  // namespace dmf::engine

@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+
+#include "engine/beads.h"
+#include "engine/kernels/kernels.h"
+#include "engine/pairs.h"
+#include "engine/parameters.h"
+#include "engine/walls/plane_wall.h"
+
+namespace dmf::engine {
+
+/// Everything that pushes a bead. Two passes over the neighbours, because the many-body force needs all
+/// densities.
+class Forces {
+ public:
+  /// @param kernel  "auto", one of available_kernels(). @throws InvalidInput otherwise.
+  Forces(const Parameters& parameters, const std::string& kernel);
+
+  /// rho of every bead, and who is in range now.
+  void density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
+  /// Forces of every bead; needs density().
+  void force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
+
+  const Kernels& kernels() const { return kernels_; }
+  const std::string& kernel_name() const { return kernel_name_; }
+
+ private:
+  PairPass pass_over(Beads& beads, const PlaneWall& wall) const;
+
+  Kernels kernels_;
+  std::string kernel_name_;
+  PairPass constants_;
+};
+
+}  // namespace dmf::engine

@@ -1,0 +1,102 @@
+#include "engine/integrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "engine/noise.h"
+
+namespace dmf::engine {
+namespace {
+
+/// The box as the bounce-back sees it: infinitely wide along periodic axes.
+struct Planes {
+  float lower[3], upper[3];
+};
+
+Planes planes_of(const Domain& domain) {
+  Planes planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool open = domain.periodic(axis);
+    planes.lower[axis] =
+        open ? -std::numeric_limits<float>::infinity() : static_cast<float>(domain.lower[axis]);
+    planes.upper[axis] =
+        open ? std::numeric_limits<float>::infinity() : static_cast<float>(domain.upper[axis]);
+  }
+  return planes;
+}
+
+bool outside(const Planes& planes, const float* at) {
+  bool result = false;
+  for (int axis = 0; axis < 3; ++axis)
+    result |= at[axis] < planes.lower[axis] || at[axis] > planes.upper[axis];
+  return result;
+}
+
+/// Fraction of the way from `from` along `way` to the first plane that is crossed.
+float fraction_to_plane(const Planes& planes, const float* from, const float* way) {
+  float fraction = 1.f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float to = from[axis] + way[axis];
+    if (to < planes.lower[axis]) fraction = std::min(fraction, (planes.lower[axis] - from[axis]) / way[axis]);
+    if (to > planes.upper[axis]) fraction = std::min(fraction, (planes.upper[axis] - from[axis]) / way[axis]);
+  }
+  return std::max(fraction, 0.f);
+}
+
+}  // namespace
+
+DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+  const float dt = static_cast<float>(parameters.time_step);
+  const float half_dt = 0.5f * dt;
+  const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
+  const StepKey key = step_key(parameters.seed, step, Stream::pair);
+  const Planes planes = planes_of(parameters.domain);
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+  float largest = 0;
+  std::int64_t wild = -1;
+#pragma omp parallel for schedule(static) reduction(max : largest, wild)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Record& p = beads.position[i];
+    Record& v = beads.velocity[i];
+    const Record& f = beads.force[i];
+    float half[3] = {v.x + half_dt * f.x, v.y + half_dt * f.y, v.z + half_dt * f.z};
+    float seen[3] = {half[0] + prediction * f.x, half[1] + prediction * f.y, half[2] + prediction * f.z};
+    const float way[3] = {dt * half[0], dt * half[1], dt * half[2]};
+    float at[3] = {p.x + way[0], p.y + way[1], p.z + way[2]};
+    if (outside(planes, at)) {
+      const float from[3] = {p.x, p.y, p.z};
+      const float travelled = 2.f * fraction_to_plane(planes, from, way) - 1.f;
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = std::clamp(from[axis] + way[axis] * travelled, planes.lower[axis], planes.upper[axis]);
+        half[axis] = -half[axis];
+        seen[axis] = -seen[axis];
+      }
+    }
+    const float moved = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+    if (!(moved < largest_step * largest_step)) wild = std::max<std::int64_t>(wild, i);
+    const Record& listed = beads.listed[i];
+    const float dx = at[0] - listed.x, dy = at[1] - listed.y, dz = at[2] - listed.z;
+    largest = std::max(largest, dx * dx + dy * dy + dz * dz);
+    const std::uint32_t bits = bead_key(key, beads.id[i]);
+    p = {at[0], at[1], at[2], 0.f};
+    std::memcpy(&p.w, &bits, sizeof bits);
+    v = {half[0], half[1], half[2], 0.f};
+    beads.predicted[i] = {seen[0], seen[1], seen[2], 0.f};
+  }
+  return {largest, wild};
+}
+
+void finish(Beads& beads, const Parameters& parameters) {
+  const float half_dt = 0.5f * static_cast<float>(parameters.time_step);
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Record& v = beads.velocity[i];
+    const Record& f = beads.force[i];
+    v = {v.x + half_dt * f.x, v.y + half_dt * f.y, v.z + half_dt * f.z, 0.f};
+  }
+}
+
+}  // namespace dmf::engine

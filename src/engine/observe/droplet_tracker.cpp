@@ -1,0 +1,285 @@
+#include "engine/observe/droplet_tracker.h"
+
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/multi_point.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
+#include <cmath>
+#include <utility>
+
+namespace dmf::engine {
+namespace {
+
+/// Beads below this height over the wall wet it, r_c.
+constexpr double wetting_height = 1.0;
+/// A bead with fewer neighbours in range is on its way out of the liquid and does not mark the footprint. The
+/// bulk has about 25, the rim about 10.
+constexpr std::uint16_t fewest_rim_neighbours = 8;
+/// The slab turns when the way of the droplet has turned by more than this cosine (45 degrees).
+constexpr double same_way_cosine = 0.70710678;
+
+const NeighbourRow& row_of(const std::vector<NeighbourBlock>& blocks, std::uint32_t bead) {
+  const std::uint32_t block_size = blocks.front().end - blocks.front().begin;
+  const NeighbourBlock& block = blocks[bead / block_size];
+  return block.rows[bead - block.begin];
+}
+
+std::vector<Eigen::Vector2f> convex_outline(const std::vector<Eigen::Vector2d>& points, double& area) {
+  namespace bg = boost::geometry;
+  using Point = bg::model::d2::point_xy<double>;
+  bg::model::multi_point<Point> cloud;
+  for (const Eigen::Vector2d& p : points) cloud.emplace_back(p.x(), p.y());
+  bg::model::polygon<Point, /*clockwise=*/false, /*closed=*/false> hull;
+  bg::convex_hull(cloud, hull);
+  area = bg::area(hull);
+  std::vector<Eigen::Vector2f> outline;
+  for (const Point& p : hull.outer())
+    outline.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  return outline;
+}
+
+}  // namespace
+
+DropletTracker::DropletTracker(const Parameters& parameters, double wall_plane)
+    : parameters_(parameters), wall_plane_(wall_plane) {}
+
+void DropletTracker::update(std::uint64_t step, const Beads& beads,
+                            const std::vector<NeighbourBlock>& blocks) {
+  const double elapsed = static_cast<double>(step - last_step_) * parameters_.time_step;
+  last_step_ = step;
+  std::vector<Component> components = connected_components(beads, blocks);
+  give_identities(step, components);
+
+  vapour_beads_ = beads.size();
+  std::fill(droplet_of_bead_.begin(), droplet_of_bead_.end(), 0u);
+  droplets_.clear();
+  for (const Component& component : components) {
+    for (const std::uint32_t bead : component.beads) {
+      const std::uint32_t id = beads.id[bead];
+      if (id >= droplet_of_bead_.size()) droplet_of_bead_.resize(id + 1, 0u);
+      droplet_of_bead_[id] = component.id;
+    }
+    vapour_beads_ -= component.beads.size();
+    droplets_.push_back(measure(component, beads, blocks, elapsed));
+  }
+  std::sort(droplets_.begin(), droplets_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+}
+
+std::vector<DropletTracker::Component> DropletTracker::connected_components(
+    const Beads& beads, const std::vector<NeighbourBlock>& blocks) const {
+  std::vector<Component> components;
+  if (beads.size() == 0) return components;
+  const std::uint32_t block_size = blocks.front().end - blocks.front().begin;
+  const Vector3d size = parameters_.domain.size();
+  std::vector<char> seen(beads.size(), 0);
+  const auto position = [&](std::uint32_t bead) {
+    const Record& p = beads.position[bead];
+    return Vector3d(p.x, p.y, p.z);
+  };
+  for (std::uint32_t first = 0; first < beads.size(); ++first) {
+    if (seen[first]) continue;
+    seen[first] = 1;
+    Component component;
+    component.beads.push_back(first);
+    component.positions.push_back(position(first));
+    for (std::size_t k = 0; k < component.beads.size(); ++k) {  // breadth first: the list is the queue
+      const std::uint32_t bead = component.beads[k];
+      const NeighbourBlock& block = blocks[bead / block_size];
+      const NeighbourRow& row = block.rows[bead - block.begin];
+      for (std::uint32_t hit = 0; hit < row.hits; ++hit) {
+        const std::uint32_t other = block.in_range[row.liquid_begin + hit] / sizeof(Record);
+        if (seen[other]) continue;
+        seen[other] = 1;
+        component.beads.push_back(other);
+        Vector3d apart = position(other) - position(bead);
+        for (int axis = 0; axis < 3; ++axis)
+          if (parameters_.domain.periodic(axis))
+            apart[axis] -= size[axis] * std::nearbyint(apart[axis] / size[axis]);
+        component.positions.push_back(component.positions[k] + apart);
+      }
+    }
+    if (component.beads.size() < fewest_beads) continue;
+    for (const std::uint32_t bead : component.beads)
+      if (const std::uint32_t before = droplet_of(beads.id[bead])) ++component.beads_from[before];
+    components.push_back(std::move(component));
+  }
+  return components;
+}
+
+void DropletTracker::give_identities(std::uint64_t step, std::vector<Component>& components) {
+  // Who inherits each droplet: the component with most of its beads.
+  std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> heirs;  // droplet -> (beads, component)
+  for (std::size_t c = 0; c < components.size(); ++c)
+    for (const auto& [droplet, beads] : components[c].beads_from)
+      if (const auto [heir, first] = heirs.try_emplace(droplet, beads, c);
+          !first && beads > heir->second.first)
+        heir->second = {beads, c};
+
+  std::map<std::uint32_t, Memory> remembered;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    Component& component = components[c];
+    std::vector<std::uint32_t> inherited, sources;
+    for (const auto& [droplet, beads] : component.beads_from) {
+      if (heirs.at(droplet).second == c) inherited.push_back(droplet);
+      if (beads >= fewest_beads) sources.push_back(droplet);
+    }
+    if (!inherited.empty()) {
+      component.id =
+          *std::max_element(inherited.begin(), inherited.end(), [&](std::uint32_t a, std::uint32_t b) {
+            const std::size_t beads_a = component.beads_from[a], beads_b = component.beads_from[b];
+            return beads_a != beads_b ? beads_a < beads_b : a > b;
+          });
+      Memory memory = std::move(memory_.at(component.id));
+      if (inherited.size() > 1) {
+        for (const std::uint32_t droplet : inherited)
+          if (droplet != component.id) memory.parents.push_back(droplet);
+        events_.push_back({DropletEvent::Kind::merged, step, inherited, {component.id}});
+      }
+      remembered.emplace(component.id, std::move(memory));
+      continue;
+    }
+    component.id = next_id_++;
+    Memory memory;
+    memory.parents = sources;
+    remembered.emplace(component.id, std::move(memory));
+    if (sources.empty())
+      events_.push_back({DropletEvent::Kind::appeared, step, {}, {component.id}});
+    else {
+      std::vector<std::uint32_t> to = sources;
+      to.push_back(component.id);
+      events_.push_back({DropletEvent::Kind::split, step, sources, to});
+    }
+  }
+  for (const DropletObservation& droplet : droplets_)
+    if (heirs.count(droplet.id) == 0)
+      events_.push_back({DropletEvent::Kind::vanished, step, {droplet.id}, {}});
+  memory_ = std::move(remembered);
+}
+
+DropletObservation DropletTracker::measure(const Component& component, const Beads& beads,
+                                           const std::vector<NeighbourBlock>& blocks, double elapsed) {
+  DropletObservation droplet;
+  Memory& memory = memory_.at(component.id);
+  const double count = static_cast<double>(component.beads.size());
+  droplet.id = component.id;
+  droplet.parents = memory.parents;
+  droplet.beads = component.beads.size();
+  droplet.volume = count / parameters_.liquid.bulk_density;
+
+  Vector3d velocity = Vector3d::Zero();
+  droplet.lower = droplet.upper = component.positions.front();
+  std::vector<Eigen::Vector2d> wetting;
+  for (std::size_t k = 0; k < component.beads.size(); ++k) {
+    const Vector3d& position = component.positions[k];
+    const Record& v = beads.velocity[component.beads[k]];
+    droplet.centroid += position / count;
+    velocity += Vector3d(v.x, v.y, v.z) / count;
+    droplet.lower = droplet.lower.cwiseMin(position);
+    droplet.upper = droplet.upper.cwiseMax(position);
+    if (parameters_.domain.has_wall() && position.z() - wall_plane_ < wetting_height &&
+        row_of(blocks, component.beads[k]).hits >= fewest_rim_neighbours)
+      wetting.push_back(position.head<2>());
+  }
+  // Mean over the window; the first look has nothing to average with.
+  const double weight = droplets_.empty() && elapsed <= 0 ? 1.0
+                        : parameters_.angle_window > 0 ? 1.0 - std::exp(-elapsed / parameters_.angle_window)
+                                                       : 1.0;
+  memory.velocity += weight * (velocity - memory.velocity);
+  droplet.velocity = memory.velocity;
+  droplet.height = droplet.upper.z() - wall_plane_;
+  if (wetting.size() >= 3) droplet.footprint = convex_outline(wetting, droplet.footprint_area);
+  if (droplet.footprint_area > 0) measure_angles(droplet, component, elapsed);
+
+  // Reported inside the box, although measured on the unwrapped droplet.
+  for (int axis = 0; axis < 3; ++axis)
+    if (parameters_.domain.periodic(axis)) {
+      const double size = parameters_.domain.size()[axis], lower = parameters_.domain.lower[axis];
+      const double shift = -size * std::floor((droplet.centroid[axis] - lower) / size);
+      droplet.centroid[axis] += shift;
+      droplet.lower[axis] += shift;
+      droplet.upper[axis] += shift;
+      if (axis < 2)
+        for (Eigen::Vector2f& corner : droplet.footprint) corner[axis] += static_cast<float>(shift);
+    }
+  return droplet;
+}
+
+void DropletTracker::measure_angles(DropletObservation& droplet, const Component& component, double elapsed) {
+  RunningAngles& angles = memory_.at(component.id).angles;
+  // A droplet of N beads jitters with sqrt(k_BT / N); what is slower than half of that is rest, and keeps its
+  // way.
+  const double jitter =
+      std::sqrt(parameters_.liquid.temperature / static_cast<double>(component.beads.size()));
+  const Eigen::Vector2d horizontal = droplet.velocity.head<2>();
+  if (horizontal.norm() > 0.5 * jitter && angles.way().dot(horizontal.normalized()) < same_way_cosine)
+    angles.turn(horizontal.normalized());
+  angles.begin_sample(elapsed, parameters_.angle_window);
+  const Vector3d foot(droplet.centroid.x(), droplet.centroid.y(), wall_plane_);
+  for (const Vector3d& position : component.positions) angles.add(position - foot);
+  if (const auto found = angles.angles(parameters_.liquid.bulk_density)) {
+    droplet.advancing_angle = found->advancing;
+    droplet.receding_angle = found->receding;
+    droplet.contact_angle = 0.5 * (found->advancing + found->receding);
+  }
+}
+
+namespace {
+
+void archive_optional(Archive& archive, std::optional<double>& value) {
+  bool present = value.has_value();
+  double number = value.value_or(0.0);
+  archive(present);
+  archive(number);
+  value = present ? std::optional<double>(number) : std::nullopt;
+}
+
+void archive_vector(Archive& archive, Vector3d& vector) {
+  for (int axis = 0; axis < 3; ++axis) archive(vector[axis]);
+}
+
+void archive_droplet(Archive& archive, DropletObservation& droplet) {
+  archive(droplet.id);
+  archive(droplet.parents);
+  archive(droplet.beads);
+  for (Vector3d* vector : {&droplet.centroid, &droplet.velocity, &droplet.lower, &droplet.upper})
+    archive_vector(archive, *vector);
+  archive(droplet.volume);
+  archive(droplet.footprint_area);
+  archive(droplet.height);
+  std::vector<float> corners;
+  for (const Eigen::Vector2f& corner : droplet.footprint)
+    corners.insert(corners.end(), {corner.x(), corner.y()});
+  archive(corners);
+  droplet.footprint.clear();
+  for (std::size_t k = 0; k + 1 < corners.size(); k += 2)
+    droplet.footprint.emplace_back(corners[k], corners[k + 1]);
+  for (std::optional<double>* angle :
+       {&droplet.contact_angle, &droplet.advancing_angle, &droplet.receding_angle})
+    archive_optional(archive, *angle);
+}
+
+}  // namespace
+
+void DropletTracker::archive(Archive& archive) {
+  archive(last_step_);
+  archive(next_id_);
+  archive(vapour_beads_);
+  archive(droplet_of_bead_);
+  std::vector<std::uint32_t> ids;
+  for (const auto& entry : memory_) ids.push_back(entry.first);
+  archive(ids);
+  for (const std::uint32_t id : ids) {
+    Memory& memory = memory_[id];
+    archive(memory.parents);
+    archive_vector(archive, memory.velocity);
+    memory.angles.archive(archive);
+  }
+  std::uint64_t count = droplets_.size();
+  archive(count);
+  if (count > ids.size()) throw InvalidInput("saved state: more droplets than remembered");
+  droplets_.resize(count);
+  for (DropletObservation& droplet : droplets_) archive_droplet(archive, droplet);
+}
+
+}  // namespace dmf::engine

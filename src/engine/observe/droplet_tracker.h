@@ -1,0 +1,74 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "engine/archive.h"
+#include "engine/beads.h"
+#include "engine/kernels/kernels.h"
+#include "engine/observe/contact_angle.h"
+#include "engine/observe/snapshot.h"
+#include "engine/parameters.h"
+
+namespace dmf::engine {
+
+/// Finds droplets and keeps their identity. A droplet is a set of at least `fewest_beads` beads connected by
+/// distances below r_c. Looks at the beads at fixed steps, so that ids, events and running averages are
+/// functions of the run and not of who watches it.
+///
+/// Identity: a droplet's heir is the component that holds most of its beads. A component goes on under the id
+/// of the largest droplet whose heir it is; others whose heir it is too have merged into it. A component that
+/// is nobody's heir but holds at least `fewest_beads` beads of a droplet has split from it.
+class DropletTracker {
+ public:
+  static constexpr std::size_t fewest_beads = 20;
+
+  DropletTracker(const Parameters& parameters, double wall_plane);
+
+  /// Needs who is in range now: the density pass must have run on these positions.
+  void update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks);
+
+  const std::vector<DropletObservation>& droplets() const { return droplets_; }  ///< by id
+  std::size_t vapour_beads() const { return vapour_beads_; }
+  /// 0 for vapour and for beads placed since the last update.
+  std::uint32_t droplet_of(std::uint32_t bead_id) const {
+    return bead_id < droplet_of_bead_.size() ? droplet_of_bead_[bead_id] : 0;
+  }
+  std::vector<DropletEvent> take_events() { return std::exchange(events_, {}); }
+
+  void archive(Archive& archive);
+
+ private:
+  struct Component {
+    std::vector<std::uint32_t> beads;                 ///< indices
+    std::vector<Vector3d> positions;                  ///< unwrapped: continuous across periodic sides
+    std::map<std::uint32_t, std::size_t> beads_from;  ///< by previous droplet
+    std::uint32_t id = 0;
+  };
+  /// What is remembered of a droplet between two looks.
+  struct Memory {
+    std::vector<std::uint32_t> parents;
+    Vector3d velocity = Vector3d::Zero();
+    RunningAngles angles;
+  };
+
+  std::vector<Component> connected_components(const Beads& beads,
+                                              const std::vector<NeighbourBlock>& blocks) const;
+  void give_identities(std::uint64_t step, std::vector<Component>& components);
+  DropletObservation measure(const Component& component, const Beads& beads,
+                             const std::vector<NeighbourBlock>& blocks, double elapsed);
+  void measure_angles(DropletObservation& droplet, const Component& component, double elapsed);
+
+  Parameters parameters_;
+  double wall_plane_;
+  std::uint64_t last_step_ = 0;
+  std::uint32_t next_id_ = 1;
+  std::size_t vapour_beads_ = 0;
+  std::vector<std::uint32_t> droplet_of_bead_;  ///< by bead id
+  std::map<std::uint32_t, Memory> memory_;      ///< by droplet id
+  std::vector<DropletObservation> droplets_;
+  std::vector<DropletEvent> events_;
+};
+
+}  // namespace dmf::engine

@@ -1,0 +1,38 @@
+#include "engine/observe/state_hash.h"
+
+#include <cstring>
+
+#include "engine/noise.h"
+
+namespace dmf::engine {
+namespace {
+
+std::uint64_t fold(std::uint64_t hash, float a, float b) {
+  std::uint32_t low, high;
+  std::memcpy(&low, &a, sizeof low);
+  std::memcpy(&high, &b, sizeof high);
+  return mix64(hash ^ (static_cast<std::uint64_t>(high) << 32 | low));
+}
+
+}  // namespace
+
+std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const PlaneWall& wall) {
+  // A sum over beads does not know their order.
+  std::uint64_t sum = mix64(step + 0x9e3779b97f4a7c15ull);
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+#pragma omp parallel for schedule(static) reduction(+ : sum)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const Record &p = beads.position[i], &v = beads.velocity[i], &f = beads.force[i];
+    std::uint64_t hash = mix64(beads.id[i] + 1ull);
+    hash = fold(hash, p.x, p.y);
+    hash = fold(hash, p.z, v.x);
+    hash = fold(hash, v.y, v.z);
+    hash = fold(hash, f.x, f.y);
+    sum += fold(hash, f.z, 0.f);
+  }
+  std::uint64_t hash = mix64(sum);
+  for (const Record& bead : wall.beads()) hash = fold(hash, bead.w, 0.f);
+  return hash;
+}
+
+}  // namespace dmf::engine

@@ -1,0 +1,14 @@
+#pragma once
+#include <cstdint>
+
+#include "engine/beads.h"
+#include "engine/walls/plane_wall.h"
+
+namespace dmf::engine {
+
+/// Fingerprint of all that decides how a run goes on: step, position, velocity and force bits of every moving
+/// bead by id, and the wall's attraction. Independent of storage order. Equal hashes: the same bits, but for
+/// one chance in 2^64.
+std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const PlaneWall& wall);
+
+}  // namespace dmf::engine

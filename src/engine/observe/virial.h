@@ -1,0 +1,20 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/beads.h"
+#include "engine/kernels/kernels.h"
+#include "engine/parameters.h"
+
+namespace dmf::engine {
+
+/// Conservative pair forces between liquid beads as stress. Friction and noise cancel in the mean.
+struct Virial {
+  Eigen::Matrix3d total = Eigen::Matrix3d::Zero();  ///< sum over pairs of r_ij (x) F_ij, k_BT
+  std::vector<float> of_bead;  ///< a third of the trace, half of each pair to each bead, by storage index
+};
+
+/// In double precision, from densities and neighbours of the present positions.
+Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks, const Parameters& parameters);
+
+}  // namespace dmf::engine

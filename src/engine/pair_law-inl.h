@@ -1,0 +1,49 @@
+// Force laws of a pair, written once for double, float and lanes. Compiled per instruction set, hence no
+// `#pragma once`.
+#if defined(DMF_ENGINE_PAIR_LAW_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DMF_ENGINE_PAIR_LAW_INL_H
+#undef DMF_ENGINE_PAIR_LAW_INL_H
+#else
+#define DMF_ENGINE_PAIR_LAW_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "engine/pair_law.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dmf::engine::HWY_NAMESPACE {
+
+/// Shape of the density weight, Lan (2.38) with the exponent corrected to 2 (only then its integral is 1;
+/// Warren 2003): omega(r) = 15 / (2 pi r_d^3) (1 - r/r_d)^2 for r < r_d. The prefactor is applied once per
+/// bead, to the sum.
+template <class Real>
+HWY_INLINE Real density_weight(Real r, Real inverse_repulsion_radius) {
+  const Real w = maximum(Real(1) - r * inverse_repulsion_radius, Real(0));
+  return w * w;
+}
+
+/// Force on bead i along e = (r_i - r_j)/r, for r < r_c. Lan (2.36) conservative, (2.5), (2.6) dissipative
+/// and random with s = 2:
+///
+///   A w_c + B (rho_i + rho_j) w_d  -  gamma w_c^2 (e . v_ij)  +  phi w_c zeta_ij / sqrt(dt)
+///   w_c = 1 - r/r_c,   w_d = max(0, 1 - r/r_d),   A < 0 attracts, B > 0 repels
+///
+/// @param attraction    A_ij
+/// @param density_sum   rho_i + rho_j (walls count nothing and are not counted: rho_wall = 0)
+/// @param approach      e . v_ij, positive while the beads part
+/// @param zeta          pair noise, zero mean, unit variance
+template <class Real>
+HWY_INLINE Real mdpd_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum, Real approach,
+                           Real zeta) {
+  const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
+  const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
+  const Real random = law.random_amplitude * zeta;
+  const Real dissipative = law.friction * w_c * approach;
+  return w_c * (attraction + random - dissipative) + law.repulsion * density_sum * w_d;
+}
+
+}  // namespace dmf::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

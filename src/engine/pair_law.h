@@ -1,0 +1,36 @@
+#pragma once
+#include <cmath>
+
+#include "engine/parameters.h"
+
+namespace dmf::engine {
+
+/// Coefficients of the many-body DPD law between two species, reduced units, as the kernels use them.
+/// `Real` is double, float, or lanes. B must be the same for all pairs that share a density, otherwise the
+/// force has no potential (Warren 2013).
+template <class Real>
+struct MdpdLaw {
+  Real attraction;                ///< A, < 0
+  Real repulsion;                 ///< B, >= 0
+  Real inverse_cutoff_radius;     ///< 1 / r_c
+  Real inverse_repulsion_radius;  ///< 1 / r_d
+  Real friction;                  ///< gamma = phi^2 / (2 k_BT)
+  Real random_amplitude;          ///< phi / sqrt(dt)
+};
+
+/// The liquid's law; walls share it but for their own attraction.
+inline MdpdLaw<double> liquid_law(const LiquidParameters& liquid, double time_step) {
+  return {liquid.attraction,
+          liquid.repulsion,
+          1.0 / liquid.cutoff_radius,
+          1.0 / liquid.repulsion_radius,
+          liquid.random_amplitude * liquid.random_amplitude / (2.0 * liquid.temperature),
+          liquid.random_amplitude / std::sqrt(time_step)};
+}
+
+/// 15 / (2 pi r_d^3): turns a sum of density_weight into a density (Lan 2.38).
+inline double density_normalization(double repulsion_radius) {
+  return 15.0 / (2.0 * 3.14159265358979323846 * repulsion_radius * repulsion_radius * repulsion_radius);
+}
+
+}  // namespace dmf::engine

@@ -1,0 +1,84 @@
+#include "engine/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace dmf::engine {
+namespace {
+
+/// Collects what is out of range.
+class RangeCheck {
+ public:
+  explicit RangeCheck(std::vector<std::string>& found) : found_(found) {}
+  void within(const char* key, double value, double lower, double upper, const char* allowed) {
+    if (!(value >= lower && value <= upper))
+      found_.push_back(fmt::format("{}: {}, allowed: {}", key, value, allowed));
+  }
+  void holds(bool condition, const std::string& text) {
+    if (!condition) found_.push_back(text);
+  }
+
+ private:
+  std::vector<std::string>& found_;
+};
+
+constexpr double tiny = 1e-9;
+
+void check_liquid(const LiquidParameters& liquid, RangeCheck& check) {
+  check.within("liquid.attraction", liquid.attraction, -200, -tiny,
+               "-200 up to below 0 (attraction is negative)");
+  check.within("liquid.repulsion", liquid.repulsion, tiny, 500, "above 0 up to 500");
+  check.within("liquid.cutoff_radius", liquid.cutoff_radius, 1, 1, "1 (it is the unit of length)");
+  check.within("liquid.repulsion_radius", liquid.repulsion_radius, 0.3, 1, "0.3 to 1 (r_c)");
+  check.within("liquid.random_amplitude", liquid.random_amplitude, 0, 50, "0 to 50");
+  check.within("liquid.temperature", liquid.temperature, tiny, 10, "above 0 up to 10 (k_BT)");
+  check.within("liquid.initial_density", liquid.initial_density, 1, 12, "1 to 12 (beads per r_c^3)");
+  check.within("liquid.bulk_density", liquid.bulk_density, 1, 20, "1 to 20 (beads per r_c^3)");
+  check.within("liquid.viscosity", liquid.viscosity, tiny, 1000, "above 0 up to 1000 (m / (r_c tau))");
+  check.within("liquid.surface_tension", liquid.surface_tension, tiny, 1000,
+               "above 0 up to 1000 (k_BT / r_c^2)");
+}
+
+void check_domain(const Domain& domain, double list_range, RangeCheck& check) {
+  static const char* const axes = "xyz";
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size = domain.size()[axis];
+    const bool periodic = domain.lower_side[axis] == Side::periodic;
+    check.holds(std::isfinite(size) && size >= 3 && size <= 4000,
+                fmt::format("domain.{}: {} long, allowed: 3 to 4000 (r_c)", axes[axis], size));
+    check.holds(
+        periodic == (domain.upper_side[axis] == Side::periodic),
+        fmt::format("domain.sides.{}: periodic on one side only, allowed: periodic on both or on none",
+                    axes[axis]));
+    check.holds(
+        !periodic || size >= 3 * list_range,
+        fmt::format(
+            "domain.{}: {} long, allowed: at least {} (three times cutoff_radius + list_skin) when periodic",
+            axes[axis], size, 3 * list_range));
+    const bool may_wet = axis == 2;
+    check.holds(
+        domain.upper_side[axis] != Side::wall && (may_wet || domain.lower_side[axis] != Side::wall),
+        fmt::format("domain.sides.{}: wall, allowed: a wall of beads only on the lower z side", axes[axis]));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> violations(const Parameters& parameters) {
+  std::vector<std::string> found;
+  RangeCheck check(found);
+  check_liquid(parameters.liquid, check);
+  check.within("wall.lattice_constant", parameters.wall.lattice_constant, 0.5, 1.5, "0.5 to 1.5 (r_c)");
+  check.within("wall.layers", parameters.wall.layers, 1, 8, "1 to 8");
+  check_domain(parameters.domain, parameters.liquid.cutoff_radius + parameters.list_skin, check);
+  check.within("time_step", parameters.time_step, tiny, 0.1, "above 0 up to 0.1 (tau)");
+  check.within("integrator_lambda", parameters.integrator_lambda, 0.5, 1, "0.5 to 1");
+  check.within("list_skin", parameters.list_skin, 0.05, 1, "0.05 to 1 (r_c)");
+  check.within("observe_interval", parameters.observe_interval, 1, 100000, "1 to 100000 (steps)");
+  check.within("angle_window", parameters.angle_window, 0, 1e4, "0 to 10000 (tau)");
+  check.within("max_beads", static_cast<double>(parameters.max_beads), 1, 100e6, "1 to 100000000");
+  return found;
+}
+
+}  // namespace dmf::engine

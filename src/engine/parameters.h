@@ -1,0 +1,84 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace dmf::engine {
+
+using Eigen::Vector3d;
+
+/// What a user asked for can't be done. `what()` names the thing, its value and what is allowed; one line a
+/// violation. Nothing has changed when it is thrown.
+class InvalidInput : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// All in reduced units: lengths in r_c, masses in m, energies in k_BT, times in tau. Defaults are Lan's
+/// table 2.2.
+
+struct LiquidParameters {
+  double attraction = -40.0;  ///< A_ll; (-200, 0)
+  double repulsion = 25.0;    ///< B_ll, also used with the wall (B_lw); (0, 500)
+  double cutoff_radius =
+      1.0;  ///< r_c, range of attraction, dissipation and noise; fixed at 1, it is the unit
+  double repulsion_radius = 0.75;  ///< r_d, range of the many-body repulsion and of its density; (0.3, 1]
+  double random_amplitude = 6.0;   ///< phi; phi^2 = 2 gamma k_BT, so gamma = 18; [0, 50]
+  double temperature = 1.0;        ///< k_BT; (0, 10]
+  double initial_density = 6.0;    ///< beads per r_c^3 when a droplet is placed; [1, 12]
+
+  // What the numbers above lead to, measured (`dmf_study liquid`). They enter no force: volumes and
+  // half-density surfaces are reported with the density, SI units derived with density and tension, and
+  // dmf_run --explain uses all three.
+  double bulk_density = 6.05;    ///< of the liquid at rest, beads per r_c^3; [1, 20]
+  double surface_tension = 7.5;  ///< k_BT / r_c^2; (0, 1000]
+  double viscosity = 9.0;        ///< dynamic, m / (r_c tau); (0, 1000]
+};
+
+struct WallParameters {
+  double lattice_constant = 0.874;  ///< of the fcc(100) layers: 4 / a^3 = 6 beads per r_c^3; [0.5, 1.5]
+  int layers = 3;  ///< half a lattice constant apart, the first one on the wall plane; [1, 8]
+};
+
+/// What closes one side of the box.
+enum class Side {
+  periodic,    ///< joined to the opposite side; both must be periodic
+  reflecting,  ///< bounce-back plane without beads: keeps stray beads in the domain
+  wall,        ///< bounce-back plane on the first layer of frozen beads that wet. Only the lower z side
+};
+
+struct Domain {
+  Vector3d lower{-75, -35, -10};  ///< r_c; each side 3 to 4000 long
+  Vector3d upper{75, 35, 10};
+  std::array<Side, 3> lower_side{Side::reflecting, Side::reflecting, Side::wall};
+  std::array<Side, 3> upper_side{Side::reflecting, Side::reflecting, Side::reflecting};
+
+  Vector3d size() const { return upper - lower; }
+  bool periodic(int axis) const { return lower_side[axis] == Side::periodic; }
+  bool has_wall() const { return lower_side[2] == Side::wall; }
+  bool contains(const Vector3d& p) const {
+    return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all();
+  }
+};
+
+struct Parameters {
+  LiquidParameters liquid;
+  WallParameters wall;
+  Domain domain;
+  double time_step = 0.01;  ///< Delta t, tau; (0, 0.1]
+  double integrator_lambda =
+      0.55;                ///< Groot and Warren's lambda; [0.5, 1]. Their 0.65 leaves this liquid 2 % cold
+  double list_skin = 0.2;  ///< extra range of the neighbour list, r_c; [0.05, 1]
+  std::uint64_t seed = 1;  ///< of all randomness
+  std::uint32_t observe_interval = 20;  ///< steps between two looks of the droplet tracker; [1, 100000]
+  double angle_window = 10.0;           ///< memory of the running contact angle measurement, tau; [0, 1e4]
+  std::uint64_t max_beads = 4'000'000;  ///< moving beads a run may hold; [1, 100e6]
+};
+
+/// All violated ranges, each as "key: value, allowed: range". Empty when the parameters are sound.
+std::vector<std::string> violations(const Parameters& parameters);
+
+}  // namespace dmf::engine

@@ -1,0 +1,147 @@
+#include "engine/placement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/noise.h"
+#include "engine/observe/droplet_tracker.h"
+
+namespace dmf::engine {
+namespace {
+
+double fcc_constant(double density) { return std::cbrt(4.0 / density); }
+
+/// Calls visit(site) for every fcc site with lower <= site < upper; the lattice has a site a quarter cell
+/// inside lower.
+template <class Visit>
+void for_each_site(const Vector3d& lower, const Vector3d& upper, const Vector3d& cell, Visit visit) {
+  static const double basis[4][3] = {{.25, .25, .25}, {.75, .75, .25}, {.75, .25, .75}, {.25, .75, .75}};
+  const Eigen::Vector3i count = ((upper - lower).array() / cell.array()).ceil().cast<int>();
+  for (int k = 0; k < count.z(); ++k)
+    for (int j = 0; j < count.y(); ++j)
+      for (int i = 0; i < count.x(); ++i)
+        for (const double* offset : basis) {
+          const Vector3d site = lower + Vector3d((i + offset[0]) * cell.x(), (j + offset[1]) * cell.y(),
+                                                 (k + offset[2]) * cell.z());
+          if ((site.array() < upper.array()).all()) visit(site);
+        }
+}
+
+double smallest_periodic(const Domain& domain, int axis, double distance) {
+  return domain.periodic(axis)
+             ? distance - domain.size()[axis] * std::nearbyint(distance / domain.size()[axis])
+             : distance;
+}
+
+void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters) {
+  // Coarse first: only beads near the sites' box are compared with each of them.
+  Vector3d lower = sites.front(), upper = sites.front();
+  for (const Vector3d& site : sites) lower = lower.cwiseMin(site), upper = upper.cwiseMax(site);
+  const Vector3d middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+  const double cutoff = parameters.liquid.cutoff_radius;
+  for (const Record& record : beads.position) {
+    Vector3d from_middle = Vector3d(record.x, record.y, record.z) - middle;
+    for (int axis = 0; axis < 3; ++axis)
+      from_middle[axis] = smallest_periodic(parameters.domain, axis, from_middle[axis]);
+    if ((from_middle.cwiseAbs().array() > half.array() + cutoff).any()) continue;
+    const Vector3d image = middle + from_middle;
+    for (const Vector3d& site : sites)
+      if ((site - image).squaredNorm() < cutoff * cutoff)
+        throw InvalidInput(
+            fmt::format("place is occupied: liquid at ({:.2f}, {:.2f}, {:.2f}) r_c, allowed: {} r_c or more "
+                        "from all other liquid",
+                        image.x(), image.y(), image.z(), cutoff));
+  }
+}
+
+/// A thermal velocity component: Box-Muller on two hashed words.
+double thermal(StepKey key, std::uint32_t id, std::uint32_t component) {
+  const std::uint32_t first = bead_key(key, id * 6 + 2 * component);
+  const std::uint32_t second = bead_key(key, id * 6 + 2 * component + 1);
+  const double u = (first + 1.0) / 4294967297.0, angle = second / 4294967296.0 * 6.283185307179586;
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(angle);
+}
+
+}  // namespace
+
+std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Parameters& parameters) {
+  const Domain& domain = parameters.domain;
+  const Vector3d& center = placement.center;
+  const double radius = placement.radius;
+  if (!center.allFinite() || !std::isfinite(radius) || radius <= 0)
+    throw InvalidInput(
+        fmt::format("droplet: center ({}, {}, {}), radius {}, allowed: finite, radius above 0 (r_c)",
+                    center.x(), center.y(), center.z(), radius));
+  const double a = fcc_constant(parameters.liquid.initial_density);
+  static const char* const axes = "xyz";
+  // A sphere whose centre lies below the wall plane is a flat cap, as wide as its base.
+  const double sunk = domain.has_wall() ? std::clamp(domain.lower.z() - center.z(), 0.0, radius) : 0.0;
+  const Vector3d reach(std::sqrt(radius * radius - sunk * sunk), std::sqrt(radius * radius - sunk * sunk),
+                       radius);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool cut_by_wall = axis == 2 && domain.has_wall();
+    const double low = cut_by_wall ? domain.lower.z() : center[axis] - reach[axis],
+                 high = center[axis] + reach[axis];
+    if (domain.periodic(axis) ? 2 * reach[axis] + parameters.liquid.cutoff_radius > domain.size()[axis]
+                              : low < domain.lower[axis] - 1e-9 || high > domain.upper[axis] + 1e-9)
+      throw InvalidInput(fmt::format("droplet: {} to {} along {}, allowed: within {} to {} (r_c)", low, high,
+                                     axes[axis], domain.lower[axis], domain.upper[axis]));
+  }
+  if (4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * parameters.liquid.initial_density >
+      2.0 * static_cast<double>(parameters.max_beads))
+    throw InvalidInput(fmt::format("droplet: radius {} r_c holds more than max_beads ({}) beads", radius,
+                                   parameters.max_beads));
+  std::vector<Vector3d> sites;
+  const double lowest =
+      domain.has_wall() ? domain.lower.z() + 0.5 * a : -std::numeric_limits<double>::infinity();
+  for_each_site(center - Vector3d::Constant(radius), center + Vector3d::Constant(radius),
+                Vector3d::Constant(a), [&](const Vector3d& site) {
+                  if ((site - center).squaredNorm() < radius * radius && site.z() >= lowest)
+                    sites.push_back(site);
+                });
+  if (sites.size() < DropletTracker::fewest_beads)
+    throw InvalidInput(fmt::format("droplet: {} beads, allowed: {} or more (a radius of about 1 r_c)",
+                                   sites.size(), DropletTracker::fewest_beads));
+  return sites;
+}
+
+std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, const Parameters& parameters) {
+  if (!parameters.domain.contains(lower) || !parameters.domain.contains(upper) ||
+      !(lower.array() < upper.array()).all())
+    throw InvalidInput("slab: allowed: lower below upper, both in the domain");
+  const double a = fcc_constant(parameters.liquid.initial_density);
+  // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
+  const Vector3d size = upper - lower;
+  const Vector3d cells = (size / a).array().round().max(1.0);
+  std::vector<Vector3d> sites;
+  for_each_site(lower, upper, size.cwiseQuotient(cells),
+                [&](const Vector3d& site) { sites.push_back(site); });
+  return sites;
+}
+
+std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
+                        std::uint64_t step, std::uint32_t& next_id) {
+  if (beads.size() + sites.size() > parameters.max_beads)
+    throw InvalidInput(fmt::format("{} beads, allowed: {} in all (max_beads), {} are there", sites.size(),
+                                   parameters.max_beads, beads.size()));
+  require_free(beads, sites, parameters);
+  const StepKey key = step_key(parameters.seed, step, Stream::velocity);
+  const double spread = std::sqrt(parameters.liquid.temperature);
+  std::vector<Vector3d> velocities;
+  Vector3d mean = Vector3d::Zero();
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    const std::uint32_t id = next_id + static_cast<std::uint32_t>(k);
+    velocities.emplace_back(thermal(key, id, 0), thermal(key, id, 1), thermal(key, id, 2));
+    mean += velocities.back() / static_cast<double>(sites.size());
+  }
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    const Eigen::Vector3f at = sites[k].cast<float>(),
+                          moving = (spread * (velocities[k] - mean)).cast<float>();
+    beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, next_id++);
+  }
+  return sites.size();
+}
+
+}  // namespace dmf::engine

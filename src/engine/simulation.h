@@ -1,0 +1,97 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/observe/snapshot.h"
+#include "engine/parameters.h"
+#include "engine/wettability.h"
+
+namespace dmf::engine {
+
+/// The run can't go on: a non-finite value, a runaway temperature, a bead that moved too far in one step.
+/// `what()` says which bead, which step and which setting to look at. The simulation refuses to step from
+/// then on.
+class Instability : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How to run, as opposed to what: changes nothing in the results but the last bits between kernels.
+struct Execution {
+  int threads = 0;              ///< 0: as many as OpenMP offers
+  std::string kernel = "auto";  ///< auto, or one of available_kernels()
+};
+
+/// Names of the kernels that this processor can run, best first; the last is "reference", double precision.
+std::vector<std::string> available_kernels();
+
+/// A droplet to be placed: the cap of a sphere cut by the wall when `center` is nearer to it than `radius`.
+struct DropletPlacement {
+  Vector3d center;  ///< r_c
+  double radius;    ///< of the sphere, r_c
+};
+
+/// Beads, walls and their motion: the engine. Everything in reduced units. Not thread-safe: one thread owns
+/// it.
+class Simulation {
+ public:
+  /// @throws InvalidInput with every violated range, or when `execution.kernel` is unknown here.
+  Simulation(const Parameters& parameters, ContactAngleCurve curve, const Execution& execution = {});
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// One time step. @throws Instability.
+  void step();
+
+  /// Sets what contact angle the wall shows where, from the next step on.
+  /// @throws InvalidInput, unchanged, when an angle is outside the curve's range or not finite.
+  void set_wettability(const ContactAngleField& field);
+
+  /// Places a droplet at rest: beads on a lattice of the initial density, velocities drawn at k_BT, no net
+  /// momentum.
+  /// @throws InvalidInput, unchanged, when it is outside the domain, reaches another moving bead to within
+  /// r_c, is too small to hold 20 beads, or would exceed max_beads.
+  /// @returns the number of beads placed.
+  std::size_t add_droplet(const DropletPlacement& placement);
+
+  /// Fills the whole box with liquid of the initial density (bulk studies). @throws InvalidInput when not
+  /// empty.
+  std::size_t fill_box();
+  /// Fills a slab lower <= position < upper with liquid (film studies). @throws InvalidInput as add_droplet.
+  std::size_t fill_slab(const Vector3d& lower, const Vector3d& upper);
+
+  /// Takes a droplet's beads out. @throws InvalidInput when no such droplet is tracked.
+  void remove_droplet(std::uint32_t id);
+
+  /// The present state, immutable. Cheap without `beads` and `hash`: it copies what the tracker last saw.
+  std::shared_ptr<const Snapshot> observe(const ObserveRequest& request = {}) const;
+
+  /// Merges, splits, appearances since the last call, in order.
+  std::vector<DropletEvent> take_events();
+
+  /// The complete state as bytes: a simulation of the same parameters that loads it goes on with the same
+  /// bits.
+  std::string save_state() const;
+  /// @throws InvalidInput, unchanged, when the bytes are not a state of a simulation with these parameters.
+  void load_state(const std::string& bytes);
+
+  std::uint64_t steps() const;
+  double time() const;  ///< steps * time_step, tau
+  const Parameters& parameters() const;
+  const ContactAngleCurve& curve() const;
+  const std::string& kernel() const;  ///< the one that runs
+  int threads() const;
+
+ private:
+  void refresh();
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dmf::engine

@@ -1,0 +1,141 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/beads.h"
+#include "engine/forces.h"
+#include "engine/noise.h"
+#include "engine/pairs.h"
+#include "engine/parameters.h"
+#include "engine/walls/plane_wall.h"
+
+namespace dmf::engine {
+
+/// A system whose forces can be computed alone, for kernel and list tests. Positions scatter like a hot
+/// liquid's.
+struct System {
+  std::string name;
+  Parameters parameters;
+  Beads beads;
+  ContactAngleCurve curve = ContactAngleCurve::lan2016();
+};
+
+inline Parameters periodic_box(double size) {
+  Parameters parameters;
+  parameters.domain.lower = Vector3d::Zero();
+  parameters.domain.upper = Vector3d::Constant(size);
+  parameters.domain.lower_side =
+      parameters.domain.upper_side = {Side::periodic, Side::periodic, Side::periodic};
+  return parameters;
+}
+
+inline Parameters plate(double size, double height) {
+  Parameters parameters;
+  parameters.domain.lower = {0, 0, 0};
+  parameters.domain.upper = {size, size, height};
+  parameters.domain.lower_side = {Side::periodic, Side::periodic, Side::wall};
+  parameters.domain.upper_side = {Side::periodic, Side::periodic, Side::reflecting};
+  return parameters;
+}
+
+/// Uniform numbers in [0, 1) that depend on their index only.
+inline double scatter(std::uint32_t index) { return mix32(index * 2654435761u + 12345u) / 4294967296.0; }
+
+inline void add_bead(System& system, const Vector3d& at) {
+  const std::uint32_t id = static_cast<std::uint32_t>(system.beads.size());
+  const auto normal = [id](int k) { return static_cast<float>(2 * scatter(9 * id + k) - 1) * 1.7f; };
+  const Record position{static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()),
+                        0};
+  system.beads.add(position, {normal(0), normal(1), normal(2), 0}, id);
+  const std::uint32_t key = bead_key(step_key(system.parameters.seed, 3, Stream::pair), id);
+  std::memcpy(&system.beads.position.back().w, &key, sizeof key);
+}
+
+/// `density` beads per r_c^3, scattered where `inside` holds.
+template <class Inside>
+void scatter_beads(System& system, double density, const Vector3d& lower, const Vector3d& upper,
+                   Inside inside) {
+  const std::uint32_t count = static_cast<std::uint32_t>(density * (upper - lower).prod());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Vector3d fraction(scatter(3 * k), scatter(3 * k + 1), scatter(3 * k + 2));
+    const Vector3d at = lower + fraction.cwiseProduct(upper - lower);
+    if (inside(at)) add_bead(system, at);
+  }
+}
+
+inline std::vector<System> all_systems() {
+  std::vector<System> systems;
+  const auto begin = [&](const char* name, const Parameters& parameters) -> System& {
+    systems.push_back({name, parameters, {}});
+    return systems.back();
+  };
+  const auto everywhere = [](const Vector3d&) { return true; };
+  {
+    System& s = begin("bulk", periodic_box(8));
+    scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+  }
+  {
+    System& s = begin("smallest periodic box", periodic_box(3.6));
+    scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+  }
+  {
+    System& s = begin("free droplet", periodic_box(12));
+    scatter_beads(s, 6, {2, 2, 2}, {10, 10, 10},
+                  [](const Vector3d& p) { return (p - Vector3d(6, 6, 6)).norm() < 4; });
+  }
+  {
+    System& s = begin("droplet over a periodic corner", periodic_box(12));
+    scatter_beads(s, 6, {0, 0, 0}, {12, 12, 12}, [](const Vector3d& p) {
+      Vector3d d = p;
+      for (int axis = 0; axis < 3; ++axis) d[axis] -= 12 * std::nearbyint(d[axis] / 12);
+      return d.norm() < 3;
+    });
+  }
+  {
+    System& s = begin("droplet on wall", plate(14, 12));
+    scatter_beads(s, 6, {2, 2, 0}, {12, 12, 8},
+                  [](const Vector3d& p) { return (p - Vector3d(7, 7, 2)).norm() < 4; });
+  }
+  {
+    System& s = begin("droplet on wall over a periodic edge", plate(14, 12));
+    scatter_beads(s, 6, {-4, 2, 0}, {4, 12, 8},
+                  [](const Vector3d& p) { return (p - Vector3d(0, 7, 2)).norm() < 4; });
+  }
+  {
+    System& s = begin("thin film", plate(9, 10));
+    scatter_beads(s, 6, {0, 0, 0}, {9, 9, 1.2}, everywhere);
+  }
+  {
+    System& s = begin("sparse vapour", periodic_box(10));
+    scatter_beads(s, 0.3, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+  }
+  {
+    System& s = begin("single pair", periodic_box(10));
+    add_bead(s, {5, 5, 5});
+    add_bead(s, {5.3, 5.4, 5});
+  }
+  {
+    System& s = begin("pair across a periodic edge", periodic_box(10));
+    add_bead(s, {0.2, 5, 9.9});
+    add_bead(s, {9.9, 5.2, 0.1});
+  }
+  {
+    System& s = begin("one bead on the wall plane", plate(9, 10));
+    add_bead(s, {4, 4, 0});
+  }
+  add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
+  begin("no bead", periodic_box(10));
+  return systems;
+}
+
+/// A wall with a gradient, so that every wall bead is its own.
+inline PlaneWall wall_of(const System& system) {
+  PlaneWall wall(system.parameters.domain, system.parameters.wall,
+                 system.parameters.liquid.cutoff_radius + system.parameters.list_skin);
+  const double width = system.parameters.domain.size().x();
+  wall.set_wettability([width](double x, double) { return 150 - 110 * std::clamp(x / width, 0.0, 1.0); },
+                       system.curve);
+  return wall;
+}
+
+}  // namespace dmf::engine
