@@ -1,0 +1,74 @@
+#include "chip/command.h"
+
+#include <nlohmann/json.hpp>
+
+#include "chip/command_reader.h"
+
+namespace dmf::chip {
+
+namespace {
+
+struct NameOf {
+  const char* operator()(const SetElectrodes&) const { return "set_electrodes"; }
+  const char* operator()(const SetHv&) const { return "set_hv"; }
+  const char* operator()(const SetElectrodeVoltages&) const { return "set_electrode_voltages"; }
+  const char* operator()(const SetWettability&) const { return "set_wettability"; }
+  const char* operator()(const LoadPattern&) const { return "load_pattern"; }
+  const char* operator()(const DispenseDroplet&) const { return "dispense_droplet"; }
+  const char* operator()(const Remove&) const { return "remove"; }
+  const char* operator()(const Reset&) const { return "reset"; }
+};
+
+using Json = nlohmann::ordered_json;
+
+struct Write {
+  Json& json;
+  void operator()(const SetElectrodes& command) const { json["channels"] = command.channels; }
+  void operator()(const SetHv& command) const {
+    json["voltage"] = command.voltage;
+    json["frequency"] = command.frequency;
+    json["enabled"] = command.enabled;
+  }
+  void operator()(const SetElectrodeVoltages& command) const {
+    json["channels"] = command.channels;
+    json["voltages"] = command.voltages;
+  }
+  void operator()(const SetWettability& command) const {
+    json["positions"] = command.positions;
+    json["contact_angles"] = command.contact_angles_deg;
+  }
+  void operator()(const LoadPattern& command) const { json["name"] = command.name; }
+  void operator()(const DispenseDroplet& command) const {
+    json["x"] = command.x;
+    json["y"] = command.y;
+    json["volume"] = command.volume;
+  }
+  void operator()(const Remove& command) const { json["droplet"] = command.droplet; }
+  void operator()(const Reset&) const {}
+};
+
+}  // namespace
+
+std::string name_of(const Command& command) { return std::visit(NameOf{}, command); }
+
+std::string to_json(const Command& command) {
+  Json json;
+  json["command"] = name_of(command);
+  std::visit(Write{json}, command);
+  constexpr int kOneLine = -1;
+  // A name that is not UTF-8 must not stop a recording.
+  return json.dump(kOneLine, ' ', false, Json::error_handler_t::replace);
+}
+
+Command command_from_json(const std::string& json) {
+  // JSON is YAML, so the scene's reader serves; a reduced unit of 1 makes its bare numbers SI.
+  constexpr engine::Units kSi{1, 1, 1};
+  engine::YamlReader reader = engine::YamlReader::parse(json, "command");
+  reader.set_units(kSi);
+  const std::string name = reader.choice("command", command_names());
+  Command command = reader.failed() ? Command(Reset{}) : read_command(name, reader, kSi);
+  reader.finish();
+  return command;
+}
+
+}  // namespace dmf::chip

@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace dmf::chip {
+
+/// Everything that a controller can tell the chip, as plain values in SI units. A command takes effect
+/// between two steps or not at all. `to_json` / `command_from_json` are exact inverses: a recorded command
+/// can be applied again.
+///
+/// The voltage of a pad is its own one when SetElectrodeVoltages gave it one, else the rail's when its
+/// channel is on and the rail is enabled, else 0. SetWettability overrides the angles that follow from the
+/// voltages until the next SetElectrodes, SetHv or SetElectrodeVoltages, whoever gives it.
+
+struct SetElectrodes {  ///< these channels on, all others off; every pad is back on the rail
+  std::vector<std::uint32_t> channels;
+};
+struct SetHv {           ///< the shared rail
+  double voltage = 0;    ///< V rms
+  double frequency = 0;  ///< Hz, [0, 100e3]; 0 is DC. Kept and shown; the physics knows V rms only
+  bool enabled = false;
+};
+struct SetElectrodeVoltages {  ///< drives single electrodes past the rail; unlisted unchanged
+  std::vector<std::uint32_t> channels;
+  std::vector<double> voltages;  ///< V rms, as long as channels
+};
+struct SetWettability {  ///< piecewise-linear theta(x) over the whole plate, constant beyond its ends
+  std::vector<double> positions;           ///< x, m, strictly rising
+  std::vector<double> contact_angles_deg;  ///< as long as positions
+};
+struct LoadPattern {  ///< starts a named timed sequence of the scene, in place of the one that runs
+  std::string name;
+};
+struct DispenseDroplet {  ///< a droplet on the plate above (x, y)
+  double x = 0, y = 0;    ///< m
+  double volume = 0;      ///< m^3, of the sphere that is placed just touching the plate
+};
+struct Remove {  ///< takes a droplet off the chip
+  std::uint32_t droplet = 0;
+};
+struct Reset {};  ///< the scene from its start
+
+using Command = std::variant<SetElectrodes, SetHv, SetElectrodeVoltages, SetWettability, LoadPattern,
+                             DispenseDroplet, Remove, Reset>;
+
+/// "set_electrodes", "set_hv", ...: the name of the service that gives this command.
+std::string name_of(const Command& command);
+/// {"command": "set_hv", "voltage": 63, ...}: the members in SI units, angles in degrees; numbers round-trip
+/// exactly.
+std::string to_json(const Command& command);
+/// @throws engine::InvalidInput naming the key.
+Command command_from_json(const std::string& json);
+
+/// What became of a command.
+struct Reply {
+  bool success = false;
+  std::string message;                          ///< what was done, or what was wrong and what is allowed
+  std::uint64_t step = 0;                       ///< at which it took effect
+  std::vector<std::uint32_t> applied_channels;  ///< channels that are on now (set_electrodes)
+};
+
+/// An accepted command with the step before which it took effect.
+struct CommandRecord {
+  std::uint64_t step;
+  Command command;
+};
+
+}  // namespace dmf::chip

@@ -1,0 +1,171 @@
+#include "chip/command_rules.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "chip/command_reader.h"
+
+namespace dmf::chip {
+
+namespace {
+
+constexpr double kMaxFrequency = 100e3;  // Hz
+
+/// A length in r_c as both readers of a message want it.
+std::string length_text(double reduced, const engine::Units& units) {
+  return fmt::format("{:.6g} mm ({:.6g} r_c)", reduced * units.length_m * 1e3, reduced);
+}
+
+/// Collects what is wrong with one command.
+class Rules {
+ public:
+  Rules(const Scene& scene, const engine::ContactAngleCurve& curve) : scene_(scene), curve_(curve) {}
+
+  void operator()(const SetElectrodes& command) { check_channels(command.channels); }
+
+  void operator()(const SetHv& command) {
+    check_voltage(command.voltage);
+    if (!(command.frequency >= 0 && command.frequency <= kMaxFrequency)) {
+      note("frequency {} Hz: allowed 0 to {} Hz", command.frequency, kMaxFrequency);
+    }
+  }
+
+  void operator()(const SetElectrodeVoltages& command) {
+    if (command.channels.empty()) note("channels: none given, allowed: one or more");
+    check_lengths("channels", command.channels.size(), "voltages", command.voltages.size());
+    check_channels(command.channels);
+    for (const double voltage : command.voltages) check_voltage(voltage);
+  }
+
+  void operator()(const SetWettability& command) {
+    if (command.positions.empty()) note("positions: none given, allowed: one or more");
+    check_lengths("positions", command.positions.size(), "contact angles", command.contact_angles_deg.size());
+    check_positions(command.positions);
+    for (const double angle : command.contact_angles_deg) {
+      if (!(angle >= curve_.min_angle() && angle <= curve_.max_angle())) {
+        note("contact angle {} degrees: allowed {:.4g} to {:.4g} degrees, the calibrated range", angle,
+             curve_.min_angle(), curve_.max_angle());
+      }
+    }
+  }
+
+  void operator()(const LoadPattern& command) {
+    if (scene_.patterns.count(command.name)) return;
+    std::vector<std::string> names;
+    for (const auto& [name, sequence] : scene_.patterns) names.push_back(name);
+    if (names.empty()) {
+      note("pattern `{}` does not exist; this scene has no patterns", command.name);
+    } else {
+      note("pattern `{}` does not exist; patterns are {}", command.name, fmt::join(names, ", "));
+    }
+  }
+
+  void operator()(const DispenseDroplet& command) {
+    if (!std::isfinite(command.x)) note("x {} m: allowed: a finite number", command.x);
+    if (!std::isfinite(command.y)) note("y {} m: allowed: a finite number", command.y);
+    if (!(command.volume > 0 && std::isfinite(command.volume))) {
+      note("volume {} m^3: allowed more than 0 m^3", command.volume);
+    }
+    if (!found_.empty()) return;
+    for (auto& violation : violations(placement_of(command, scene_), scene_)) found_.push_back(violation);
+  }
+
+  void operator()(const Remove&) {}
+  void operator()(const Reset&) {}
+
+  std::vector<std::string> found() && { return std::move(found_); }
+
+ private:
+  template <typename... Arguments>
+  void note(const char* text, const Arguments&... arguments) {
+    found_.push_back(fmt::format(fmt::runtime(text), arguments...));
+  }
+
+  void check_channels(const std::vector<std::uint32_t>& channels) {
+    std::set<std::uint32_t> seen;
+    for (const std::uint32_t channel : channels) {
+      if (!seen.insert(channel).second) note("channels: {} given twice", channel);
+      try {
+        scene_.layout.index_of(channel);
+      } catch (const engine::InvalidInput& error) {
+        note("{}", error.what());
+      }
+    }
+  }
+
+  void check_voltage(double voltage) {
+    const double most = scene_.electrowetting.max_voltage;
+    if (!(voltage >= 0 && voltage <= most)) note("voltage {} V: allowed 0 to {} V", voltage, most);
+  }
+
+  void check_lengths(const char* a, std::size_t a_size, const char* b, std::size_t b_size) {
+    if (a_size != b_size) note("{}: {} given but {} {}, allowed: as many of both", a, a_size, b_size, b);
+  }
+
+  void check_positions(const std::vector<double>& positions) {
+    const double lower = scene_.parameters.domain.lower.x();
+    const double upper = scene_.parameters.domain.upper.x();
+    // A position that was converted from r_c and back may be off by its last bits.
+    const double tolerance = 1e-9 * (upper - lower);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double x = positions[i] / scene_.units.length_m;
+      if (!(x >= lower - tolerance && x <= upper + tolerance)) {
+        note("position {}: allowed {} to {}, the plate", length_text(x, scene_.units),
+             length_text(lower, scene_.units), length_text(upper, scene_.units));
+      }
+      if (i > 0 && !(positions[i] > positions[i - 1])) {
+        note("positions: {} m after {} m, allowed: rising", positions[i], positions[i - 1]);
+      }
+    }
+  }
+
+  const Scene& scene_;
+  const engine::ContactAngleCurve& curve_;
+  std::vector<std::string> found_;
+};
+
+}  // namespace
+
+std::vector<std::string> violations(const Command& command, const Scene& scene,
+                                    const engine::ContactAngleCurve& curve) {
+  Rules rules(scene, curve);
+  std::visit(rules, command);
+  return std::move(rules).found();
+}
+
+engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scene& scene) {
+  const engine::Units& units = scene.units;
+  const double radius = sphere_radius(command.volume / units.volume_m3());
+  const double z = scene.parameters.domain.lower.z() + radius;
+  return {{command.x / units.length_m, command.y / units.length_m, z}, radius};
+}
+
+std::vector<std::string> violations(const engine::DropletPlacement& placement, const Scene& scene) {
+  std::vector<std::string> found;
+  const engine::Domain& domain = scene.parameters.domain;
+  constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool cut_by_wall = axis == 2 && domain.has_wall();
+    const double reach = domain.periodic(axis) ? 0 : placement.radius;
+    const double lower = domain.lower[axis] + (cut_by_wall ? -placement.radius : reach);
+    const double upper = domain.upper[axis] - reach;
+    const double tolerance = 1e-9 * (domain.upper[axis] - domain.lower[axis]);
+    const double centre = placement.center[axis];
+    if (centre >= lower - tolerance && centre <= upper + tolerance) continue;
+    if (lower > upper) {
+      found.push_back(fmt::format("radius {}: allowed up to {}, what fits into the domain along {}",
+                                  length_text(placement.radius, scene.units),
+                                  length_text(0.5 * domain.size()[axis], scene.units), kAxes[axis]));
+    } else {
+      found.push_back(fmt::format("centre's {} {}: allowed {} to {} for a radius of {}", kAxes[axis],
+                                  length_text(centre, scene.units), length_text(lower, scene.units),
+                                  length_text(upper, scene.units),
+                                  length_text(placement.radius, scene.units)));
+    }
+  }
+  return found;
+}
+
+}  // namespace dmf::chip

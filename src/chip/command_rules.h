@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "chip/command.h"
+#include "chip/scene.h"
+#include "engine/parameters.h"
+#include "engine/simulation.h"
+#include "engine/wettability.h"
+
+namespace dmf::chip {
+
+/// What is wrong with a command for this scene, whoever gives it: a service, the schedule or a pattern. Each
+/// names the thing, its value and what is allowed. Empty when the command is sound; what depends on where the
+/// liquid is by then (an occupied place, a droplet that is gone) only the engine can tell.
+std::vector<std::string> violations(const Command& command, const Scene& scene,
+                                    const engine::ContactAngleCurve& curve);
+
+/// The sphere that a DispenseDroplet asks for, just touching the plate, r_c.
+engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scene& scene);
+
+/// What is wrong with where a droplet is to be placed; a side on which the domain is periodic bounds only its
+/// centre.
+std::vector<std::string> violations(const engine::DropletPlacement& placement, const Scene& scene);
+
+}  // namespace dmf::chip

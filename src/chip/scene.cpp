@@ -1,0 +1,139 @@
+#include "chip/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "chip/command_reader.h"
+#include "chip/command_rules.h"
+#include "chip/configuration.h"
+#include "chip/scene_sections.h"
+#include "engine/yaml_reader.h"
+
+namespace dmf::chip {
+
+using engine::Dimension;
+using engine::Range;
+using engine::YamlReader;
+
+namespace {
+
+/// A command as it stands in the file, kept until everything that it may name has been read.
+struct WrittenCommand {
+  YamlReader entry;
+  ScheduledCommand scheduled;
+};
+using WrittenSequence = std::vector<WrittenCommand>;
+
+/// Reads `[{at: 20, set_electrodes: {channels: [1]}}, ...]`.
+WrittenSequence read_sequence(const YamlReader& parent, const std::string& key, const engine::Units& units,
+                              const std::vector<std::string>& allowed) {
+  WrittenSequence sequence;
+  for (const YamlReader& entry : parent.mappings(key)) {
+    const double time = entry.quantity("at", Dimension::time, Range::at_least(0));
+    std::vector<std::string> given;
+    for (const std::string& name : allowed) {
+      if (entry.has(name)) given.push_back(name);
+    }
+    if (given.size() != 1) {
+      entry.report("",
+                   fmt::format("{} commands, allowed: one of {}", given.size(), fmt::join(allowed, ", ")));
+      continue;
+    }
+    const YamlReader arguments = entry.mapping(given[0]);
+    sequence.push_back({entry, {time, read_command(given[0], arguments, units)}});
+  }
+  return sequence;
+}
+
+std::vector<ScheduledCommand> by_rising_time(const WrittenSequence& sequence) {
+  std::vector<ScheduledCommand> commands;
+  for (const WrittenCommand& written : sequence) commands.push_back(written.scheduled);
+  std::stable_sort(commands.begin(), commands.end(),
+                   [](const ScheduledCommand& a, const ScheduledCommand& b) { return a.time < b.time; });
+  return commands;
+}
+
+/// Commands that a schedule may give: a reset would start the schedule anew without end.
+std::vector<std::string> schedule_commands() {
+  std::vector<std::string> names = command_names();
+  names.erase(std::remove(names.begin(), names.end(), name_of(Reset{})), names.end());
+  return names;
+}
+
+/// Commands that a pattern may give: one that loads patterns may never come to an end either.
+std::vector<std::string> pattern_commands() {
+  std::vector<std::string> names = schedule_commands();
+  names.erase(std::remove(names.begin(), names.end(), name_of(LoadPattern{})), names.end());
+  return names;
+}
+
+void check_command(const Command& command, const YamlReader& reader, const std::string& key,
+                   const Scene& scene, const engine::ContactAngleCurve& curve) {
+  for (const std::string& violation : violations(command, scene, curve)) reader.report(key, violation);
+}
+
+void check_sequence(const WrittenSequence& sequence, const Scene& scene,
+                    const engine::ContactAngleCurve& curve) {
+  for (const auto& [entry, scheduled] : sequence) {
+    check_command(scheduled.command, entry, name_of(scheduled.command), scene, curve);
+  }
+}
+
+/// The map of a scene file: every section in the order in which one needs the other.
+Scene read_scene(YamlReader root, const std::string& source) {
+  Scene scene;
+  scene.source = source;
+  scene.name = std::filesystem::path(source).stem().string();
+  scene.description = root.text("description", "");
+
+  scene.parameters.liquid = read_liquid(root);  // the units are matched with it
+  scene.units = read_units(root, scene.parameters.liquid);
+  root.set_units(scene.units);
+  read_engine(root, scene.parameters);
+  scene.settle_time = root.quantity("settle_time", Dimension::time, Range::at_least(0), 0.0);
+  scene.default_duration = root.quantity("duration", Dimension::time, Range::at_least(0), 100.0);
+
+  const auto curve = read_wettability(root, scene);
+  const bool has_layout = read_chip(root, scene);
+  read_droplets(root, scene);
+
+  // Commands may name channels, angles, patterns and places: read them all, then look at each.
+  const WrittenSequence schedule = read_sequence(root, "schedule", scene.units, schedule_commands());
+  scene.schedule = by_rising_time(schedule);
+  std::vector<WrittenSequence> patterns;
+  if (const auto section = root.optional_mapping("patterns")) {
+    for (const std::string& name : section->keys()) {
+      patterns.push_back(read_sequence(*section, name, scene.units, pattern_commands()));
+      scene.patterns[name] = by_rising_time(patterns.back());
+    }
+  }
+  // What is wrong with the ground that commands stand on would be told again for each of them.
+  if (curve && has_layout && !root.failed()) {
+    check_angles(root, scene, *curve);
+    if (scene.program) check_command(*scene.program, root.mapping("wettability"), "program", scene, *curve);
+    check_sequence(schedule, scene, *curve);
+    for (const WrittenSequence& pattern : patterns) check_sequence(pattern, scene, *curve);
+  }
+  root.finish();
+  return scene;
+}
+
+}  // namespace
+
+engine::ContactAngleCurve load_curve(const Scene& scene) {
+  if (scene.calibration_file.empty()) return engine::ContactAngleCurve::lan2016();
+  return engine::ContactAngleCurve::load(scene.calibration_file);
+}
+
+Scene load_scene(const std::string& file) {
+  const std::string path = find_config("scenes", file);
+  return read_scene(YamlReader::load(path), path);
+}
+
+Scene parse_scene(const std::string& yaml, const std::string& name) {
+  return read_scene(YamlReader::parse(yaml, name), name);
+}
+
+}  // namespace dmf::chip

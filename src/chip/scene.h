@@ -1,0 +1,55 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chip/command.h"
+#include "chip/electrowetting.h"
+#include "chip/layout.h"
+#include "engine/parameters.h"
+#include "engine/simulation.h"
+#include "engine/units.h"
+#include "engine/wettability.h"
+
+namespace dmf::chip {
+
+/// A command of a scene's own schedule or pattern.
+struct ScheduledCommand {
+  double time = 0;  ///< tau after the end of settle_time, or after the pattern was loaded
+  Command command;
+};
+
+/// What one YAML file under config/scenes says: the same for the node, dmf_run, tests and benchmarks.
+struct Scene {
+  std::string name;
+  std::string description;
+  std::string source;  ///< file it was read from
+  engine::Parameters parameters;
+  engine::Units units;
+  std::string calibration_file;  ///< resolved path; empty means Lan's own fit
+  Electrowetting electrowetting;
+  Layout layout;                          ///< inside the domain
+  std::optional<SetWettability> program;  ///< shown from the start, as if commanded before the first step
+  double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
+  double settle_time = 0;       ///< tau at rest before the scene's clock of commands starts
+  std::vector<engine::DropletPlacement> droplets;
+  std::vector<ScheduledCommand> schedule;                         ///< by rising time
+  std::map<std::string, std::vector<ScheduledCommand>> patterns;  ///< for ~load_pattern, by rising time
+};
+
+/// The relation of wall attraction and contact angle that the scene names.
+/// @throws engine::InvalidInput when its file can't be read.
+engine::ContactAngleCurve load_curve(const Scene& scene);
+
+/// Reads a scene; docs/scene_format.md lists the keys. Lengths, times, angles, voltages are numbers in
+/// reduced units (r_c, tau), degrees and volts, or text with a unit ("1.5 mm", "20 um", "5 ms", "63 V", "150
+/// deg").
+/// @param file  path, or a bare name ("electrode_line") looked up in config/scenes.
+/// @throws engine::InvalidInput listing *all* violations, each "file:line: key: value, allowed: ...".
+Scene load_scene(const std::string& file);
+
+/// Same from text, for tests; `name` stands for the file in messages.
+Scene parse_scene(const std::string& yaml, const std::string& name);
+
+}  // namespace dmf::chip

@@ -1,0 +1,260 @@
+#include "chip/scene_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "chip/command_reader.h"
+#include "chip/command_rules.h"
+#include "chip/configuration.h"
+#include "chip/polygon.h"
+
+namespace dmf::chip {
+
+using engine::Dimension;
+using engine::Domain;
+using engine::LiquidParameters;
+using engine::Range;
+using engine::Side;
+using engine::YamlReader;
+
+namespace {
+
+/// Name of Lan's own formula among the calibrations.
+constexpr const char* kLanFormula = "lan2016";
+constexpr const char* kDefaultCalibration = kLanFormula;
+
+constexpr std::uint64_t kMaxPerSide = 1000;       // columns, rows
+constexpr std::uint64_t kMaxChannel = 1'000'000;  // of a grid's first electrode and of a polygon
+
+// The engine checks its own ranges (engine::violations), so that each stands once; here any number goes.
+constexpr std::uint64_t kAnyInteger = std::numeric_limits<std::uint32_t>::max();
+
+Eigen::Vector3d read_corner(const YamlReader& domain, const std::string& key,
+                            const Eigen::Vector3d& otherwise) {
+  const auto corner = domain.quantities(key, Dimension::length, {}, {3, 3});
+  return corner.size() == 3 ? Eigen::Vector3d(corner[0], corner[1], corner[2]) : otherwise;
+}
+
+Domain read_domain(const YamlReader& root) {
+  Domain domain;
+  const YamlReader section = root.mapping("domain");
+  domain.lower = read_corner(section, "lower", domain.lower);
+  domain.upper = read_corner(section, "upper", domain.upper);
+  const auto sides = section.optional_mapping("sides");
+  if (!sides) return domain;
+  constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<std::string> words{"closed", "periodic"};
+    if (axis == 2) words.insert(words.begin(), "wall");
+    const std::string word = sides->choice(kAxes[axis], words, words.front());
+    domain.upper_side[axis] = word == "periodic" ? Side::periodic : Side::reflecting;
+    domain.lower_side[axis] = word == "wall" ? Side::wall : domain.upper_side[axis];
+  }
+  return domain;
+}
+
+/// Adds what a constructor or a look-up refused to the violations of a key.
+template <typename Action>
+bool attempt(const YamlReader& reader, const std::string& key, const Action& action) {
+  try {
+    action();
+    return true;
+  } catch (const engine::InvalidInput& refusal) {
+    std::istringstream lines(refusal.what());
+    for (std::string line; std::getline(lines, line);) reader.report(key, line);
+    return false;
+  }
+}
+
+bool read_grid(const YamlReader& section, double gap, std::vector<Electrode>& electrodes) {
+  ElectrodeGrid grid;
+  const auto origin = section.quantities("origin", Dimension::length, {}, {2, 2});
+  if (origin.size() == 2) grid.origin = {origin[0], origin[1]};
+  grid.columns = static_cast<std::uint32_t>(section.integer("columns", 1, kMaxPerSide));
+  grid.rows = static_cast<std::uint32_t>(section.integer("rows", 1, kMaxPerSide));
+  grid.pitch = section.quantity("pitch", Dimension::length, Range::above(0));
+  grid.first_channel = static_cast<std::uint32_t>(section.integer("first_channel", 0, kMaxChannel, 0));
+  for (const auto& hole : section.integer_rows("holes", 0, kMaxPerSide, {}, {2, 2})) {
+    grid.holes.push_back({static_cast<std::uint32_t>(hole[0]), static_cast<std::uint32_t>(hole[1])});
+  }
+  return attempt(section, "", [&] {
+    const auto more = electrodes_of(grid, gap);
+    electrodes.insert(electrodes.end(), more.begin(), more.end());
+  });
+}
+
+Electrode read_polygon(const YamlReader& section) {
+  Electrode electrode;
+  electrode.channel = static_cast<std::uint32_t>(section.integer("channel", 0, kMaxChannel));
+  for (const auto& corner : section.rows("outline", Dimension::length, {}, {3}, {2, 2})) {
+    electrode.outline.emplace_back(corner[0], corner[1]);
+  }
+  return electrode;
+}
+
+void read_electrowetting(const YamlReader& chip, Electrowetting& law) {
+  if (const auto section = chip.optional_mapping("electrowetting")) {
+    law.reference_voltage =
+        section->quantity("reference_voltage", Dimension::voltage, {}, law.reference_voltage);
+    law.reference_angle = section->quantity("reference_angle", Dimension::angle, {}, law.reference_angle);
+    law.saturation_angle = section->quantity("saturation_angle", Dimension::angle, {}, law.saturation_angle);
+    law.max_voltage = section->quantity("max_voltage", Dimension::voltage, {}, law.max_voltage);
+  }
+  for (const std::string& violation : violations(law)) chip.report("electrowetting", violation);
+}
+
+/// Says which electrodes reach beyond the plate.
+void check_on_plate(const YamlReader& chip, const Layout& layout, const Domain& domain) {
+  for (const Electrode& electrode : layout.electrodes()) {
+    const auto box = bounding_box(electrode.outline);
+    if ((box.min().array() >= domain.lower.head<2>().array()).all() &&
+        (box.max().array() <= domain.upper.head<2>().array()).all()) {
+      continue;
+    }
+    chip.report("",
+                fmt::format("channel {}: x {} to {}, y {} to {} r_c, allowed: inside the domain, x {} to {}, "
+                            "y {} to {} r_c",
+                            electrode.channel, box.min().x(), box.max().x(), box.min().y(), box.max().y(),
+                            domain.lower.x(), domain.upper.x(), domain.lower.y(), domain.upper.y()));
+  }
+}
+
+}  // namespace
+
+LiquidParameters read_liquid(const YamlReader& root) {
+  LiquidParameters liquid;
+  const auto section = root.optional_mapping("liquid");
+  if (!section) return liquid;
+  liquid.attraction = section->number("attraction", {}, liquid.attraction);
+  liquid.repulsion = section->number("repulsion", {}, liquid.repulsion);
+  liquid.repulsion_radius = section->number("repulsion_radius", {}, liquid.repulsion_radius);
+  liquid.random_amplitude = section->number("random_amplitude", {}, liquid.random_amplitude);
+  liquid.temperature = section->number("temperature", {}, liquid.temperature);
+  liquid.initial_density = section->number("initial_density", {}, liquid.initial_density);
+  liquid.bulk_density = section->number("bulk_density", {}, liquid.bulk_density);
+  liquid.surface_tension = section->number("surface_tension", {}, liquid.surface_tension);
+  return liquid;
+}
+
+engine::Units read_units(const YamlReader& root, const LiquidParameters& liquid) {
+  double length = 10e-6;           // m
+  double density = 1000;           // kg/m^3, water
+  double surface_tension = 0.072;  // N/m, water in air at 25 degrees C
+  if (const auto section = root.optional_mapping("units")) {
+    if (section->has("preset")) {
+      section->choice("preset", {"lan2016"});
+      return engine::Units::lan2016();
+    }
+    length = section->quantity("length", Dimension::length, {1e-9, 1e-2}, length);
+    density = section->quantity("density", Dimension::density, {1, 1e5}, density);
+    surface_tension =
+        section->quantity("surface_tension", Dimension::surface_tension, {1e-6, 10}, surface_tension);
+  }
+  return engine::Units::matching(length, density, surface_tension, liquid.bulk_density,
+                                 liquid.surface_tension);
+}
+
+void read_engine(const YamlReader& root, engine::Parameters& parameters) {
+  if (const auto wall = root.optional_mapping("wall")) {
+    parameters.wall.lattice_constant = wall->number("lattice_constant", {}, parameters.wall.lattice_constant);
+    parameters.wall.layers =
+        static_cast<int>(wall->integer("layers", 0, kMaxPerSide, parameters.wall.layers));
+  }
+  parameters.domain = read_domain(root);
+  parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
+  parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
+  parameters.integrator_lambda = root.number("integrator_lambda", {}, parameters.integrator_lambda);
+  parameters.list_skin = root.quantity("list_skin", Dimension::length, {}, parameters.list_skin);
+  parameters.observe_interval = static_cast<std::uint32_t>(
+      root.integer("observe_interval", 0, kAnyInteger, parameters.observe_interval));
+  parameters.angle_window = root.quantity("angle_window", Dimension::time, {}, parameters.angle_window);
+  parameters.max_beads = root.integer("max_beads", 0, kAnyInteger, parameters.max_beads);
+  for (const std::string& violation : engine::violations(parameters)) root.report_path(violation);
+}
+
+std::optional<engine::ContactAngleCurve> read_wettability(const YamlReader& root, Scene& scene) {
+  std::string calibration = kDefaultCalibration;
+  // The section is optional, and so is what is wrong with the default calibration: noted at the root then.
+  const auto section = root.optional_mapping("wettability");
+  if (section) {
+    calibration = section->text("calibration", calibration);
+    scene.electrowetting.rest_angle =
+        section->quantity("rest_angle", Dimension::angle, {}, scene.electrowetting.rest_angle);
+    if (const auto program = section->optional_mapping("program")) {
+      scene.program = std::get<SetWettability>(read_command("set_wettability", *program, scene.units));
+    }
+  }
+  std::optional<engine::ContactAngleCurve> curve;
+  attempt(section.value_or(root), section ? "calibration" : "", [&] {
+    if (calibration != kLanFormula) scene.calibration_file = find_config("calibration", calibration);
+    curve = load_curve(scene);
+  });
+  return curve;
+}
+
+bool read_chip(const YamlReader& root, Scene& scene) {
+  const auto chip = root.optional_mapping("chip");
+  if (!chip) return true;
+  const Domain& domain = scene.parameters.domain;
+  if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
+  read_electrowetting(*chip, scene.electrowetting);
+
+  const double gap = chip->quantity("gap", Dimension::length, Range::above(0));
+  if (gap <= 0) return false;
+  std::vector<Electrode> electrodes;
+  bool sound = true;
+  for (const YamlReader& grid : chip->mappings("grids")) sound &= read_grid(grid, gap, electrodes);
+  for (const YamlReader& polygon : chip->mappings("polygons")) electrodes.push_back(read_polygon(polygon));
+  if (electrodes.empty() && sound) {
+    chip->report("", "no electrodes, allowed: one or more under `grids` or `polygons`");
+    return false;
+  }
+  // With a grid or an outline left out, the layout would only complain about what follows from that.
+  if (root.failed()) return false;
+  if (!attempt(*chip, "", [&] { scene.layout = Layout(std::move(electrodes), gap); })) return false;
+  check_on_plate(*chip, scene.layout, domain);
+  return true;
+}
+
+void read_droplets(const YamlReader& root, Scene& scene) {
+  const Domain& domain = scene.parameters.domain;
+  for (const YamlReader& section : root.mappings("droplets")) {
+    const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
+    const double radius = read_radius(section);
+    if (centre.size() < 2 || radius <= 0) continue;
+    const double touching = domain.lower.z() + radius;
+    const engine::DropletPlacement placement{
+        {centre[0], centre[1], centre.size() == 3 ? centre[2] : touching}, radius};
+    for (const std::string& violation : violations(placement, scene)) section.report("", violation);
+    for (const engine::DropletPlacement& other : scene.droplets) {
+      // The engine wants r_c between beads of two droplets.
+      const double between = (placement.center - other.center).norm() - radius - other.radius;
+      if (between < 1) {
+        section.report("", fmt::format("{:.4g} r_c from another droplet, allowed: 1 r_c or more", between));
+      }
+    }
+    scene.droplets.push_back(placement);
+  }
+}
+
+void check_angles(const YamlReader& root, const Scene& scene, const engine::ContactAngleCurve& curve) {
+  const Electrowetting& law = scene.electrowetting;
+  const std::string allowed = fmt::format("allowed: {:.4g} to {:.4g} degrees, the calibrated range",
+                                          curve.min_angle(), curve.max_angle());
+  const auto inside = [&curve](double angle) {
+    return angle >= curve.min_angle() && angle <= curve.max_angle();
+  };
+  if (!inside(law.rest_angle)) {
+    root.report_path(fmt::format("wettability.rest_angle: {} degrees, {}", law.rest_angle, allowed));
+  }
+  const double lowest = law.contact_angle(law.max_voltage);
+  if (!scene.layout.electrodes().empty() && !inside(lowest)) {
+    root.report_path(fmt::format("chip.electrowetting.max_voltage: {} V leads to {:.4g} degrees, {}",
+                                 law.max_voltage, lowest, allowed));
+  }
+}
+
+}  // namespace dmf::chip

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "chip/command.h"
+#include "chip/command_reader.h"
+#include "refusal.h"
+
+namespace dmf::chip {
+namespace {
+
+std::vector<Command> one_of_each() {
+  return {SetElectrodes{{0, 4294967295u}},
+          SetElectrodes{},
+          SetHv{63.000000000000007, 1e3, true},
+          SetElectrodeVoltages{{1, 2}, {0.1, 5e-324}},
+          SetWettability{{-4e-4, 1.0 / 3e3}, {150, 40.1}},
+          LoadPattern{"for\"ward\n\xc3\xa4 \x01"},
+          DispenseDroplet{-1e-5 / 3, 2e-4, 4.1887902047863905e-15},
+          Remove{7},
+          Reset{}};
+}
+
+TEST(CommandJson, RoundTripsToTheLastBit) {
+  for (const Command& command : one_of_each()) {
+    const std::string json = to_json(command);
+    const Command back = command_from_json(json);
+    EXPECT_EQ(back.index(), command.index()) << json;
+    EXPECT_EQ(to_json(back), json);
+  }
+  const auto voltages = std::get<SetElectrodeVoltages>(command_from_json(to_json(one_of_each()[3]))).voltages;
+  EXPECT_EQ(voltages, (std::vector<double>{0.1, 5e-324}));
+  const auto dispense = std::get<DispenseDroplet>(command_from_json(to_json(one_of_each()[6])));
+  EXPECT_EQ(dispense.x, -1e-5 / 3);
+  EXPECT_EQ(dispense.volume, 4.1887902047863905e-15);
+  EXPECT_EQ(std::get<LoadPattern>(command_from_json(to_json(one_of_each()[5]))).name,
+            "for\"ward\n\xc3\xa4 \x01");
+}
+
+TEST(CommandJson, LooksAsDocumented) {
+  EXPECT_EQ(to_json(SetHv{63, 1000, true}),
+            R"({"command":"set_hv","voltage":63.0,"frequency":1000.0,"enabled":true})");
+  EXPECT_EQ(to_json(Reset{}), R"({"command":"reset"})");
+}
+
+TEST(CommandJson, EveryCommandHasTheNameOfItsService) {
+  const auto commands = one_of_each();
+  for (const std::string& name : command_names()) {
+    const auto named = [&name](const Command& command) { return name_of(command) == name; };
+    EXPECT_TRUE(std::any_of(commands.begin(), commands.end(), named)) << name;
+  }
+  EXPECT_EQ(command_names().size(), std::variant_size_v<Command>);
+}
+
+TEST(CommandJson, WhatIsWrongIsNamed) {
+  const auto refused = [](const char* json) { return refusal([json] { command_from_json(json); }); };
+  EXPECT_TRUE(holds(refused(R"({"command":"set_hv","frequency":0})"), "voltage: missing"));
+  EXPECT_TRUE(
+      holds(refused(R"({"command":"set_hv","voltage":null})"), "voltage: nothing, allowed: a finite number"));
+  EXPECT_TRUE(holds(refused(R"({"command":"fly"})"), "command: fly, allowed: set_electrodes, set_hv"));
+  EXPECT_TRUE(holds(refused(R"({"voltage":5})"), "command: missing"));
+  EXPECT_TRUE(holds(refused(R"({"command":"remove","droplet":1,"fast":true})"), "fast: unknown key"));
+  EXPECT_TRUE(
+      holds(refused(R"({"command":"set_electrodes","channels":[-1]})"), "channels[0]: -1, allowed: a whole"));
+  EXPECT_TRUE(holds(refused("{"), "is not YAML"));
+}
+
+}  // namespace
+}  // namespace dmf::chip

@@ -1,0 +1,258 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "chip/configuration.h"
+#include "chip/scene.h"
+#include "refusal.h"
+
+namespace dmf::chip {
+namespace {
+
+const char* const kChip = R"(
+domain: {lower: [-20, -10, 0], upper: [20, 10, 20]}
+wettability: {rest_angle: 110}
+chip:
+  gap: 2
+  grids: [{origin: [-12, 0], columns: 3, rows: 1, pitch: 12}]
+  electrowetting: {reference_angle: 60, saturation_angle: 55}
+)";
+
+Scene parse(const std::string& more) { return parse_scene(kChip + more, "scene.yaml"); }
+std::string refused(const std::string& more) {
+  return refusal([&] { parse(more); });
+}
+
+TEST(ShippedScenes, AllLoad) {
+  for (const char* name :
+       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array"}) {
+    const Scene scene = load_scene(name);
+    EXPECT_EQ(scene.name, name);
+    EXPECT_FALSE(scene.description.empty()) << name;
+    EXPECT_FALSE(scene.droplets.empty()) << name;
+    EXPECT_GT(scene.default_duration, scene.settle_time) << name;
+  }
+}
+
+TEST(ShippedScenes, EveryFileIsListedHere) {
+  for (const auto& entry : std::filesystem::directory_iterator(DMF_SOURCE_DIR "/config/scenes")) {
+    EXPECT_NO_THROW(load_scene(entry.path().string())) << entry.path();
+  }
+}
+
+TEST(ShippedScenes, GradientIsLans) {
+  const Scene scene = load_scene("gradient_R5");
+  ASSERT_EQ(scene.droplets.size(), 1u);
+  EXPECT_TRUE(scene.droplets[0].center.isApprox(Eigen::Vector3d(-40, 0, -5)))
+      << "touches the wall at z = -10";
+  EXPECT_EQ(scene.settle_time / scene.parameters.time_step, 2000);
+  const auto& program = std::get<SetWettability>(scene.schedule.at(0).command);
+  EXPECT_DOUBLE_EQ(program.positions[1], 40 * scene.units.length_m);
+  EXPECT_EQ(program.contact_angles_deg, (std::vector<double>{150, 40}));
+}
+
+TEST(ShippedScenes, ArrayLooksAsItsCommentDraws) {
+  const Scene scene = load_scene("electrode_array");
+  EXPECT_EQ(scene.layout.channels_text(), "0-14, 16-23");
+  EXPECT_EQ(scene.layout.overlapping({{-31, -19}, {-29, -19}, {-30, -17}}).at(0), scene.layout.index_of(0));
+  const auto& top_right = scene.layout.electrodes()[scene.layout.index_of(23)];
+  EXPECT_TRUE(top_right.centroid.isApprox(scene.droplets[1].center.head<2>()));
+}
+
+TEST(Scene, UnitsAreWatersByDefaultAndLansOnDemand) {
+  const engine::Units water = parse("").units;
+  EXPECT_DOUBLE_EQ(water.length_m, 1e-5);
+  EXPECT_NEAR(water.surface_tension_N_per_m() * 7.5, 0.072, 1e-12);
+  EXPECT_NEAR(6.05 * water.mass_kg / 1e-15, 1000, 1e-9);
+  EXPECT_DOUBLE_EQ(parse("units: {preset: lan2016}\n").units.time_s, 8.5e-6);
+  EXPECT_TRUE(holds(refused("units: {length: 10}\n"), "units.length: 10, allowed: a number with a unit"));
+  EXPECT_TRUE(
+      holds(refused("units: {length: 10 ms}\n"), "units.length: 10 ms, allowed: a number with a unit"));
+}
+
+TEST(Scene, TheSameLengthInAnyUnitIsTheSame) {
+  const Scene reduced = parse("droplets: [{center: [-12, 0], radius: 5}]\n");
+  const Scene metric = parse("droplets: [{center: [-0.12 mm, 0 um], radius: 50 um}]\n");
+  const Scene by_volume = parse("droplets: [{center: [-12, 0], volume: 0.5235987755982989 nl}]\n");
+  for (const Scene* scene : {&metric, &by_volume}) {
+    EXPECT_NEAR(scene->droplets[0].radius, reduced.droplets[0].radius, 1e-12);
+    EXPECT_TRUE(scene->droplets[0].center.isApprox(reduced.droplets[0].center, 1e-12));
+  }
+}
+
+TEST(Scene, EverythingWrongIsToldAtOnceWithFileAndLine) {
+  const std::string text = refusal([] {
+    parse_scene(
+        "domain: {lower: [0, 0, 0], upper: [20, 20, 2]}\n"
+        "time_step: 5 mm\n"
+        "liquid: {atraction: -40}\n"
+        "integrator_lambda: 0.1\n"
+        "droplets:\n"
+        "  - {center: [0], radius: 5}\n"
+        "  - {center: [10, 10], radius: 1, volume: 1 nl}\n"
+        "schedule:\n"
+        "  - {at: 1, set_electrodes: {channel: [1]}}\n"
+        "  - {at: -1}\n"
+        "  - {at: 1, reset: {}}\n"
+        "patterns: {p: [{at: 0, load_pattern: {name: p}}]}\n",
+        "bad.yaml");
+  });
+  EXPECT_TRUE(holds(text, "bad.yaml:1: domain.z: 2 long, allowed: 3 to 4000"));
+  EXPECT_TRUE(
+      holds(text, "bad.yaml:2: time_step: 5 mm, allowed: a finite number tau (units: s, ms, us, ns)"));
+  EXPECT_TRUE(holds(text, "bad.yaml:3: liquid.atraction: unknown key, did you mean `attraction`?"));
+  EXPECT_TRUE(holds(text, "bad.yaml:4: integrator_lambda: 0.1, allowed: 0.5 to 1"));
+  EXPECT_TRUE(holds(text, "bad.yaml:6: droplets[0].center: a list of 1, allowed: a list of 2 to 3 numbers"));
+  EXPECT_TRUE(holds(text, "bad.yaml:7: droplets[1].volume: given together with radius"));
+  EXPECT_TRUE(holds(text, "bad.yaml:9: schedule[0].set_electrodes.channels: missing"));
+  EXPECT_TRUE(
+      holds(text, "bad.yaml:9: schedule[0].set_electrodes.channel: unknown key, did you mean `channels`?"));
+  EXPECT_TRUE(holds(text, "bad.yaml:10: schedule[1].at: -1, allowed: at least 0 tau"));
+  EXPECT_TRUE(holds(text, "bad.yaml:10: schedule[1]: 0 commands, allowed: one of set_electrodes"));
+  EXPECT_TRUE(holds(text, "bad.yaml:11: schedule[2].reset: unknown key"));
+  EXPECT_TRUE(holds(text, "bad.yaml:12: patterns.p[0].load_pattern: unknown key"));
+}
+
+TEST(Scene, CommandsAreHeldToWhatTheChipCanDo) {
+  const std::string text = refused(
+      "schedule:\n"
+      "  - {at: 0, set_electrodes: {channels: [9, 1, 1]}}\n"
+      "  - {at: 0, set_hv: {voltage: 120, frequency: 1 V}}\n");
+  EXPECT_TRUE(holds(text, "frequency: 1 V, allowed")) << "types are told before what commands mean";
+  const std::string meaning = refused(
+      "schedule:\n"
+      "  - {at: 0, set_electrodes: {channels: [9, 1, 1]}}\n"
+      "  - {at: 0, set_hv: {voltage: 120}}\n"
+      "patterns:\n"
+      "  p:\n"
+      "    - {at: 0, set_wettability: {positions: [0, 0, 30], contact_angles: [100, 20]}}\n"
+      "    - {at: 0, dispense_droplet: {x: 18, y: 0, radius: 5}}\n");
+  EXPECT_TRUE(
+      holds(meaning, "scene.yaml:9: schedule[0].set_electrodes: channel 9 does not exist; channels are 0-2"));
+  EXPECT_TRUE(holds(meaning, "scene.yaml:9: schedule[0].set_electrodes: channels: 1 given twice"));
+  EXPECT_TRUE(holds(meaning, "scene.yaml:10: schedule[1].set_hv: voltage 120 V: allowed 0 to 80 V"));
+  EXPECT_TRUE(holds(meaning,
+                    "scene.yaml:13: patterns.p[0].set_wettability: positions: 3 given but 2 contact angles"));
+  EXPECT_TRUE(
+      holds(meaning, "position 0.3 mm (30 r_c): allowed -0.2 mm (-20 r_c) to 0.2 mm (20 r_c), the plate"));
+  EXPECT_TRUE(holds(meaning, "contact angle 20 degrees: allowed 40 to 150 degrees"));
+  EXPECT_TRUE(holds(meaning, "scene.yaml:14: patterns.p[1].dispense_droplet: centre's x"));
+}
+
+TEST(Scene, ElectrodesAndDropletsStayOnThePlate) {
+  EXPECT_TRUE(holds(refused("droplets: [{center: [17, 0], radius: 5}]\n"),
+                    "scene.yaml:8: droplets[0]: centre's x 0.17 mm (17 r_c): allowed"));
+  EXPECT_TRUE(holds(refused("droplets: [{center: [0, 0], radius: 3}, {center: [6.5, 0], radius: 3}]\n"),
+                    "droplets[1]: 0.5 r_c from another droplet, allowed: 1 r_c or more"));
+  EXPECT_TRUE(
+      holds(refused("droplets: [{center: [0, 0], radius: 15}]\n"), "radius 0.15 mm (15 r_c): allowed up to"));
+  const std::string text = refusal([] {
+    parse_scene(
+        "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\n"
+        "chip:\n"
+        "  gap: 1\n"
+        "  polygons:\n"
+        "    - {channel: 4, outline: [[1, 1], [9, 1], [5, 8]]}\n"
+        "    - {channel: 5, outline: [[11, 1], [21, 1], [15, 8]]}\n",
+        "scene.yaml");
+  });
+  EXPECT_TRUE(
+      holds(text, "chip: channel 5: x 11 to 21, y 1 to 8 r_c, allowed: inside the domain, x 0 to 20"));
+  EXPECT_EQ(text.find("channel 4"), std::string::npos);
+}
+
+TEST(Scene, AnglesStayWithinTheCalibration) {
+  EXPECT_TRUE(holds(refusal([] {
+                      parse_scene(
+                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\nwettability: {rest_angle: 160}\n",
+                          "scene.yaml");
+                    }),
+                    "scene.yaml:2: wettability.rest_angle: 160 degrees, allowed: 40 to 150 degrees"));
+  std::string low = kChip;
+  low.replace(low.find("saturation_angle: 55"), 20, "saturation_angle: 20");
+  EXPECT_TRUE(holds(refusal([&] { parse_scene(low, "scene.yaml"); }),
+                    "chip.electrowetting.max_voltage: 80 V leads to"));
+}
+
+TEST(Scene, ElectrowettingAndLayoutAreCheckedWhereTheyStand) {
+  EXPECT_TRUE(holds(refusal([] {
+                      parse_scene(
+                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\n"
+                          "chip:\n"
+                          "  gap: 2\n"
+                          "  grids: [{origin: [9, 9], columns: 1, rows: 1, pitch: 1}]\n"
+                          "  electrowetting: {reference_angle: 10, max_voltage: -1}\n",
+                          "s.yaml");
+                    }),
+                    "s.yaml:4: chip.grids[0]: pitch: 1 r_c, allowed: more than the gap, 2 r_c\n"
+                    "s.yaml:5: chip.electrowetting: reference_angle: 10, allowed"));
+}
+
+TEST(Scene, ScheduleIsPlayedByRisingTime) {
+  const Scene scene = parse(
+      "schedule:\n  - {at: 5, set_electrodes: {channels: [1]}}\n  - {at: 2, set_hv: {voltage: 10}}\n"
+      "  - {at: 5, set_electrodes: {channels: [2]}}\n");
+  ASSERT_EQ(scene.schedule.size(), 3u);
+  EXPECT_EQ(name_of(scene.schedule[0].command), "set_hv");
+  EXPECT_EQ(std::get<SetElectrodes>(scene.schedule[2].command).channels[0], 2u)
+      << "as written at equal times";
+}
+
+TEST(Scene, ANameThatIsNotThereIsAnsweredWithThoseThatAre) {
+  const std::string text = refusal([] { load_scene("electrode_lines"); });
+  EXPECT_TRUE(holds(text, "did you mean electrode_line?"));
+  EXPECT_TRUE(holds(text, "droplet_gradient"));
+  EXPECT_TRUE(holds(refused("wettability: {}\n"), "wettability: given twice"));
+  EXPECT_TRUE(holds(refusal([] {
+                      parse_scene(
+                          "domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\nwettability: {calibration: nope}\n",
+                          "scene.yaml");
+                    }),
+                    "scene.yaml:2: wettability.calibration: nope: there is no such file"));
+}
+
+/// A config directory of its own, through the environment.
+class OtherConfig : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char folder[] = "/tmp/dmf_config_XXXXXX";
+    ASSERT_NE(mkdtemp(folder), nullptr);
+    directory_ = folder;
+    std::filesystem::create_directories(directory_ / "scenes");
+    std::filesystem::create_directories(directory_ / "calibration");
+    setenv("DMF_SIM_CONFIG", folder, 1);
+  }
+  void TearDown() override {
+    unsetenv("DMF_SIM_CONFIG");
+    std::filesystem::remove_all(directory_);
+  }
+  void write(const std::string& file, const std::string& text) { std::ofstream(directory_ / file) << text; }
+
+  std::filesystem::path directory_;
+};
+
+TEST_F(OtherConfig, IsFoundThroughTheEnvironment) {
+  write("calibration/mine.yaml", "description: d\ncommand: c\npoints: [[-20, 60, 1], [-10, 120, 1]]\n");
+  write("scenes/small.yaml",
+        "domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\nwettability: {calibration: mine, rest_angle: 110}\n");
+  const Scene scene = load_scene("small");
+  EXPECT_EQ(load_curve(scene).max_angle(), 120);
+  write("scenes/small.yaml",
+        "domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\nwettability: {calibration: mine, rest_angle: 150}\n");
+  EXPECT_TRUE(holds(refusal([] { load_scene("small"); }), "allowed: 60 to 120 degrees"));
+}
+
+TEST_F(OtherConfig, ACalibrationThatIsBrokenIsNamedInTheScene) {
+  write("calibration/mine.yaml", "description: d\ncommand: c\npoints: [[-20, 60, 1], [-10, x, 1]]\n");
+  const std::string text = refusal([] {
+    parse_scene("domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\nwettability: {calibration: mine}\n",
+                "scene.yaml");
+  });
+  EXPECT_TRUE(holds(text, "scene.yaml:2: wettability.calibration: "));
+  EXPECT_TRUE(holds(text, "mine.yaml:3: points[1][1]: x, allowed: a finite number"));
+}
+
+}  // namespace
+}  // namespace dmf::chip
