@@ -1,0 +1,61 @@
+// dmf_run SCENE: a scene without ROS.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "engine/simulation.h"
+#include "engine/wait_policy.h"
+#include "tools/explain.h"
+#include "tools/headless_run.h"
+
+int main(int argc, char** argv) {
+  using namespace dmf;
+  engine::prefer_sleeping_threads(argv);
+  CLI::App app("Runs a scene of dmf_sim without ROS, by the scene's own schedule.");
+  tools::RunOptions options;
+  bool explain_only = false, hash = false;
+  app.add_option("scene", options.scene, "name in config/scenes, or a file")->required();
+  auto* steps = app.add_option("--steps", options.steps, "steps in all, from the scene's start");
+  app.add_option("--until", options.until, "time to run to, tau")
+      ->excludes(steps)
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "0: all processors")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "instead of the scene's");
+  app.add_option("--kernel", options.kernel,
+                 "auto, " + fmt::format("{}", fmt::join(engine::available_kernels(), ", ")))
+      ->capture_default_str();
+  auto* output = app.add_option("--out", options.output, "folder for droplets.csv and checkpoints");
+  app.add_option("--checkpoint-every", options.checkpoint_every, "steps between checkpoints in --out")
+      ->needs(output);
+  app.add_option("--resume", options.resume, "go on from the newest good checkpoint of this folder")
+      ->check(CLI::ExistingDirectory);
+  app.add_flag("--explain", explain_only, "print what would be simulated, and stop");
+  app.add_flag("--hash", hash, "print the hash of the final state");
+  app.add_flag("--json", options.json, "the last line is one JSON object");
+  app.add_flag("--quiet", options.quiet, "no progress line");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (explain_only) {
+      fmt::print("{}", tools::explain(chip::load_scene(options.scene)));
+      return 0;
+    }
+    const tools::RunResult result = tools::headless_run(options);
+    if (hash) fmt::print("{:016x}\n", result.hash);
+    if (options.json)
+      fmt::print("{}\n", tools::to_json(result));
+    else
+      fmt::print(
+          "{}: {} beads, {} steps (time {:.6g}) in {:.2f} s, {:.0f} ns per bead-step ({}, {} threads), "
+          "temperature {:.4f}\n",
+          result.scene, result.beads, result.steps, result.time, result.wall_s, result.ns_per_bead_step,
+          result.kernel, result.threads, result.temperature);
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "dmf_run: {}\n", problem.what());
+    return 1;
+  }
+  return 0;
+}

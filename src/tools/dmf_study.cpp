@@ -1,0 +1,51 @@
+// dmf_study NAME: the measurements behind what the package claims, over seeds, with spread.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "tools/study.h"
+
+int main(int argc, char** argv) {
+  using namespace dmf::tools;
+  const std::map<std::string, void (*)(const StudyOptions&)> studies{
+      {"contact_angle", study_contact_angle},
+      {"commanded_angle", study_commanded_angle},
+      {"liquid", study_liquid},
+      {"crossing", study_crossing}};
+  CLI::App app(
+      "Studies of dmf_sim.\n"
+      "  contact_angle    wall attraction -> contact angle; writes calibration.yaml\n"
+      "  commanded_angle  commanded against shown angle, through the calibration\n"
+      "  liquid           temperature, density, surface tension, viscosity\n"
+      "  crossing         a droplet on a wettability gradient, time against Lan's\n"
+      "A study that was stopped goes on where it was: finished runs stand in its CSV files.");
+  std::string name;
+  StudyOptions options;
+  app.add_option("name", name, "study")->required()->check(CLI::IsMember(studies));
+  app.add_option("--seeds", options.seeds, "runs for the spread")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--jobs", options.jobs, "runs at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--radius", options.radius, "of the droplet, r_c (default: the study's)")
+      ->check(CLI::Range(3.0, 40.0));
+  app.add_option("--time-step", options.time_step, "tau")
+      ->check(CLI::Range(1e-4, 0.1))
+      ->capture_default_str();
+  app.add_option("--lambda", options.lambda, "of the integrator (default: the engine's)")
+      ->check(CLI::Range(0.5, 1.0));
+  app.add_option("--calibration", options.calibration, "name, file, or lan2016")->capture_default_str();
+  app.add_option("--scene", options.scene, "for crossing")->capture_default_str();
+  app.add_option("--out", options.output, "folder for CSV files")->capture_default_str();
+  app.add_flag("--quick", options.quick, "short runs that show that it works");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    studies.at(name)(options);
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "dmf_study: {}\n", problem.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,188 @@
+#include "tools/headless_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chip/checkpoint_file.h"
+
+namespace dmf::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> interrupted{false};
+extern "C" void on_interrupt(int) { interrupted = true; }
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// One line a look and droplet, in SI units beside reduced ones.
+class DropletLog {
+ public:
+  DropletLog(const std::string& folder, bool append) {
+    if (folder.empty()) return;
+    std::filesystem::create_directories(folder);
+    const std::string file = folder + "/droplets.csv";
+    const bool fresh = !append || !std::filesystem::exists(file);
+    out_.open(file, fresh ? std::ios::trunc : std::ios::app);
+    if (!out_) throw std::runtime_error(fmt::format("{}: can't be written", file));
+    if (fresh)
+      out_ << "step,time_mdpd,time_s,droplet,beads,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vx_mm_per_s,vy_mm_"
+              "per_s,"
+              "footprint_area_mdpd,height_mdpd,advancing_deg,receding_deg,temperature\n";
+  }
+
+  void write(const engine::Snapshot& snapshot, const engine::Units& units) {
+    if (!out_.is_open()) return;
+    const double to_mm_per_s = units.velocity_m_per_s() * 1e3;
+    for (const auto& d : snapshot.droplets)
+      out_ << fmt::format(
+          "{},{:.6g},{:.6g},{},{},{:.5f},{:.5f},{:.5f},{:.6f},{:.6f},{:.4f},{:.4f},{:.3f},{:.3f},{:.2f},{:."
+          "2f},{:.5f}\n",
+          snapshot.step, snapshot.time, snapshot.time * units.time_s, d.id, d.beads, d.centroid.x(),
+          d.centroid.y(), d.centroid.z(), d.velocity.x(), d.velocity.y(), d.velocity.x() * to_mm_per_s,
+          d.velocity.y() * to_mm_per_s, d.footprint_area, d.height, d.advancing_angle.value_or(NAN),
+          d.receding_angle.value_or(NAN), snapshot.temperature);
+    out_.flush();
+    if (!out_) throw std::runtime_error("droplets.csv: write failed; is the disk full?");
+  }
+
+ private:
+  std::ofstream out_;
+};
+
+/// A line that rewrites itself on a terminal, at most five times a second.
+class Progress {
+ public:
+  Progress(std::uint64_t from, std::uint64_t to, bool quiet)
+      : from_(from), to_(to), shown_(!quiet && isatty(2)) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\n");
+  }
+  void show(std::uint64_t step) {
+    if (!shown_ || (seconds_since(last_) < 0.2 && step != to_)) return;
+    last_ = Clock::now();
+    const double rate = static_cast<double>(step - from_) / std::max(1e-9, seconds_since(start_));
+    fmt::print(stderr, "\r{} of {} steps, {:.0f} steps/s, {:.0f} s left   ", step, to_, rate,
+               static_cast<double>(to_ - step) / std::max(1.0, rate));
+    std::fflush(stderr);
+  }
+
+ private:
+  std::uint64_t from_, to_;
+  bool shown_;
+  Clock::time_point start_ = Clock::now(), last_ = start_ - std::chrono::seconds(1);
+};
+
+void write_checkpoint(const std::string& folder, const chip::Experiment& experiment) {
+  const auto snapshot = experiment.observe({false, true});
+  chip::Checkpoint checkpoint;
+  checkpoint.scene = experiment.scene().name;
+  checkpoint.seed = experiment.simulation().parameters().seed;
+  checkpoint.step = snapshot->step;
+  checkpoint.time = snapshot->time;
+  checkpoint.state_hash = *snapshot->state_hash;
+  checkpoint.state = experiment.save();
+  chip::CheckpointFolder(folder).write(fmt::format("step_{:012}.checkpoint", snapshot->step), checkpoint);
+}
+
+/// The newest checkpoint that can be read. Damaged ones are named on standard error and passed over.
+void resume_from(const std::string& folder, chip::Experiment& experiment) {
+  const chip::CheckpointFolder checkpoints(folder);
+  std::vector<std::string> names = checkpoints.names();
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [](const std::string& name) { return name.rfind("step_", 0) != 0; }),
+              names.end());
+  for (auto name = names.rbegin(); name != names.rend(); ++name) try {
+      experiment.load(checkpoints.read(*name).state);
+      return;
+    } catch (const engine::InvalidInput& problem) {
+      fmt::print(stderr, "{}: passed over: {}\n", *name, problem.what());
+    }
+  throw engine::InvalidInput(
+      fmt::format("--resume: {}, allowed: a folder with a good step_*.checkpoint of this scene", folder));
+}
+
+std::uint64_t last_step(const RunOptions& options, const chip::Scene& scene) {
+  if (options.steps) return *options.steps;
+  const double until = options.until.value_or(scene.settle_time + scene.default_duration);
+  return static_cast<std::uint64_t>(std::llround(until / scene.parameters.time_step));
+}
+
+}  // namespace
+
+RunResult headless_run(const RunOptions& options) {
+  const chip::Scene scene = chip::load_scene(options.scene);
+  chip::Experiment experiment(scene, {options.threads, options.kernel}, options.seed);
+  if (!options.resume.empty()) resume_from(options.resume, experiment);
+  DropletLog log(options.output, !options.resume.empty());
+
+  interrupted = false;
+  const auto previous_int = std::signal(SIGINT, on_interrupt),
+             previous_term = std::signal(SIGTERM, on_interrupt);
+  const std::uint64_t from = experiment.steps(), to = std::max(from, last_step(options, scene));
+  double temperature_sum = 0, looks = 0, bead_steps = 0;
+  const auto start = Clock::now();
+  {
+    Progress progress(from, to, options.quiet);
+    while (experiment.steps() < to && !interrupted) {
+      experiment.step();
+      const std::uint64_t step = experiment.steps();
+      if (step % scene.parameters.observe_interval == 0 || step == to) {
+        const auto snapshot = experiment.observe();
+        temperature_sum += snapshot->temperature;
+        looks += 1;
+        bead_steps += static_cast<double>(snapshot->moving_beads) * scene.parameters.observe_interval;
+        log.write(*snapshot, scene.units);
+        progress.show(step);
+      }
+      if (options.checkpoint_every > 0 && step % options.checkpoint_every == 0)
+        write_checkpoint(options.output, experiment);
+    }
+  }
+  if (interrupted && !options.output.empty()) write_checkpoint(options.output, experiment);
+  std::signal(SIGINT, previous_int);
+  std::signal(SIGTERM, previous_term);
+
+  RunResult result;
+  result.wall_s = seconds_since(start);
+  const auto end = experiment.observe({false, true});
+  result.scene = scene.name;
+  result.kernel = experiment.simulation().kernel();
+  result.threads = experiment.simulation().threads();
+  result.beads = end->moving_beads;
+  result.steps = end->step;
+  result.time = end->time;
+  result.ns_per_bead_step = bead_steps > 0 ? result.wall_s * 1e9 / bead_steps : 0;
+  result.temperature = looks > 0 ? temperature_sum / looks : end->temperature;
+  result.hash = *end->state_hash;
+  return result;
+}
+
+std::string to_json(const RunResult& result) {
+  nlohmann::ordered_json json;
+  json["scene"] = result.scene;
+  json["kernel"] = result.kernel;
+  json["threads"] = result.threads;
+  json["beads"] = result.beads;
+  json["steps"] = result.steps;
+  json["time"] = result.time;
+  json["wall_s"] = result.wall_s;
+  json["ns_per_bead_step"] = result.ns_per_bead_step;
+  json["temperature"] = result.temperature;
+  json["hash"] = fmt::format("{:016x}", result.hash);
+  return json.dump();
+}
+
+}  // namespace dmf::tools

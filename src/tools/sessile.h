@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+
+#include "engine/simulation.h"
+
+namespace dmf::tools {
+
+/// A droplet at rest on a plate of one wettability, as the contact angle is measured in the field.
+struct SessileRun {
+  double attraction = -15;      ///< A_lw of the wall
+  double radius = 10;           ///< of the free sphere with the droplet's volume, r_c
+  double starting_angle = 110;  ///< the cap it starts as, degrees: near the answer shortens the wait
+  double settle = 100;          ///< tau before measuring
+  double measure = 150;         ///< tau of measuring, a look every 0.2 tau
+  std::uint64_t seed = 1;
+  engine::Parameters parameters{};  ///< liquid, wall, time step; the domain is laid around the droplet
+};
+
+struct SessileResult {
+  double angle = 0;       ///< whole measurement, degrees
+  double first_half = 0;  ///< of the measurement: differs from second_half while the droplet still spreads
+  double second_half = 0;
+  double temperature = 0;  ///< mean, k_BT
+};
+
+/// @throws engine::Instability, engine::InvalidInput; std::runtime_error when no circle could be fitted.
+SessileResult run_sessile(const SessileRun& run);
+
+}  // namespace dmf::tools
