@@ -24,7 +24,7 @@ namespace {
 
 /// Name of Lan's own formula among the calibrations.
 constexpr const char* kLanFormula = "lan2016";
-constexpr const char* kDefaultCalibration = kLanFormula;
+constexpr const char* kDefaultCalibration = "water_like";
 
 constexpr std::uint64_t kMaxPerSide = 1000;       // columns, rows
 constexpr std::uint64_t kMaxChannel = 1'000'000;  // of a grid's first electrode and of a polygon

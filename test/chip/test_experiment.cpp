@@ -15,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Three pads, a droplet small enough to simulate in a blink, and a row of commands of its own.
 const char* const kScene = R"(
 domain: {lower: [-20, -8, 0], upper: [20, 8, 10]}
-wettability: {rest_angle: 110}
+wettability: {calibration: lan2016, rest_angle: 110}
 chip:
   gap: 2
   grids: [{origin: [-12, 0], columns: 3, rows: 1, pitch: 12}]
@@ -45,6 +45,17 @@ std::uint64_t hash(const Experiment& experiment) {
 
 void run(Experiment& experiment, int steps) {
   for (int i = 0; i < steps; ++i) experiment.step();
+}
+
+TEST(ShippedScenes, AllStart) {
+  for (const char* name :
+       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array"}) {
+    const Scene shipped = load_scene(name);
+    Experiment experiment(shipped, {});
+    experiment.step();
+    EXPECT_EQ(experiment.observe()->droplets.size(), shipped.droplets.size()) << name;
+    EXPECT_EQ(experiment.observe()->vapour_beads, 0u) << name;
+  }
 }
 
 /// Everything of an experiment that a refused command must leave as it is.

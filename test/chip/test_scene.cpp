@@ -13,7 +13,7 @@ namespace {
 
 const char* const kChip = R"(
 domain: {lower: [-20, -10, 0], upper: [20, 10, 20]}
-wettability: {rest_angle: 110}
+wettability: {calibration: lan2016, rest_angle: 110}
 chip:
   gap: 2
   grids: [{origin: [-12, 0], columns: 3, rows: 1, pitch: 12}]
@@ -36,9 +36,11 @@ TEST(ShippedScenes, AllLoad) {
   }
 }
 
-TEST(ShippedScenes, EveryFileIsListedHere) {
-  for (const auto& entry : std::filesystem::directory_iterator(DMF_SOURCE_DIR "/config/scenes")) {
-    EXPECT_NO_THROW(load_scene(entry.path().string())) << entry.path();
+TEST(ShippedScenes, SoDoesEveryOtherFileInTheirFolders) {
+  for (const char* folder : {DMF_SOURCE_DIR "/config/scenes", DMF_SOURCE_DIR "/test/scenes"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      EXPECT_NO_THROW(load_scene(entry.path().string())) << entry.path();
+    }
   }
 }
 
@@ -166,7 +168,7 @@ TEST(Scene, ElectrodesAndDropletsStayOnThePlate) {
 TEST(Scene, AnglesStayWithinTheCalibration) {
   EXPECT_TRUE(holds(refusal([] {
                       parse_scene(
-                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\nwettability: {rest_angle: 160}\n",
+                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\nwettability: {calibration: lan2016, rest_angle: 160}\n",
                           "scene.yaml");
                     }),
                     "scene.yaml:2: wettability.rest_angle: 160 degrees, allowed: 40 to 150 degrees"));
