@@ -34,8 +34,9 @@ HWY_INLINE MdpdLaw<Lanes> in_lanes(const MdpdLaw<double>& law) {
 /// Separation r_i - r_j, by the nearest image where `across_periodic`.
 struct Separation {
   Lanes x, y, z;
-  HWY_INLINE Lanes squared() const { return x * x + y * y + z * z; }
 };
+
+HWY_INLINE Lanes squared_length(Lanes x, Lanes y, Lanes z) { return x * x + y * y + z * z; }
 
 HWY_INLINE Lanes nearest_image(Lanes d, float period, float inverse_period) {
   return d - Lanes(period) * nearest_integer(d * Lanes(inverse_period));
@@ -73,7 +74,7 @@ HWY_INLINE void density_of_bead(const PairPass& pass, std::uint32_t bead, Neighb
     Lanes x, y, z, key;
     load_records(pass.position, neighbours + k, x, y, z, key);
     const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r2 = d.squared();
+    const Lanes r2 = squared_length(d.x, d.y, d.z);
     const Mask in_range = both(first_lanes(row.liquid_count - k), r2 < squared_cutoff);
     density = density + zero_unless(in_range, density_weight(square_root(r2), inverse_repulsion_radius));
     hit_count += append(load_lanes(neighbours + k), in_range, hits + hit_count);
@@ -118,7 +119,7 @@ HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, st
     load_records(pass.position, hits + k, x, y, z, key);
     load_records(pass.predicted, hits + k, vx, vy, vz, density);
     const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r = square_root(maximum(d.squared(), Lanes(smallest_squared_distance)));
+    const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
     const Lanes approach =
         (d.x * (Lanes(moving.x) - vx) + d.y * (Lanes(moving.y) - vy) + d.z * (Lanes(moving.z) - vz)) *
@@ -141,7 +142,7 @@ HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std:
     Lanes x, y, z, attraction;
     load_records(pass.wall, neighbours + k, x, y, z, attraction);
     const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r2 = d.squared();
+    const Lanes r2 = squared_length(d.x, d.y, d.z);
     const Lanes r = square_root(maximum(r2, Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
     const Lanes approach =
@@ -182,10 +183,12 @@ HWY_INLINE std::size_t list_in_range(const std::vector<CandidateRun>& runs, cons
   for (const CandidateRun& run : runs) {
     const Lanes from_x(x - run.shift_x), from_y(y - run.shift_y), from_z(z - run.shift_z);
     for (std::uint32_t j = run.begin; j < run.end; j += lane_count) {
-      const Separation d{from_x - load_lanes(xs + j), from_y - load_lanes(ys + j),
-                         from_z - load_lanes(zs + j)};
+      // Three numbers, not a struct: GCC 12 copies a struct of vectors through memory here, four times the
+      // cost.
+      const Lanes r2 = squared_length(from_x - load_lanes(xs + j), from_y - load_lanes(ys + j),
+                                      from_z - load_lanes(zs + j));
       const UnsignedLanes index = UnsignedLanes(j) + lane_numbers();
-      const Mask near = both(first_lanes(run.end - j), d.squared() < squared_range);
+      const Mask near = both(first_lanes(run.end - j), r2 < squared_range);
       found += append(index * UnsignedLanes(static_cast<std::uint32_t>(sizeof(Record))),
                       both(near, different(index, UnsignedLanes(self))), to + found);
     }
