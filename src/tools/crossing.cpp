@@ -1,0 +1,32 @@
+#include "tools/crossing.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "chip/experiment.h"
+
+namespace dmf::tools {
+
+Crossing run_crossing(const chip::Scene& scene, std::uint64_t seed, double limit) {
+  chip::Experiment experiment(scene, {1, "auto"}, seed);
+  Crossing crossing{{{-30, NAN}, {-20, NAN}, {0, NAN}, {30, NAN}, {40, NAN}}, 0};
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint32_t interval = scene.parameters.observe_interval;
+  double bead_steps = 0;
+  while (experiment.simulation().time() - scene.settle_time < limit && std::isnan(crossing.passed.at(40))) {
+    for (std::uint32_t k = 0; k < interval; ++k) experiment.step();
+    const auto snapshot = experiment.observe();
+    bead_steps += static_cast<double>(interval) * static_cast<double>(snapshot->moving_beads);
+    if (snapshot->droplets.empty()) continue;
+    const engine::DropletObservation* largest = &snapshot->droplets.front();
+    for (const auto& droplet : snapshot->droplets)
+      if (droplet.beads > largest->beads) largest = &droplet;
+    for (auto& [x, time] : crossing.passed)
+      if (std::isnan(time) && largest->centroid.x() >= x) time = snapshot->time - scene.settle_time;
+  }
+  crossing.ns_per_bead_step =
+      std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / bead_steps;
+  return crossing;
+}
+
+}  // namespace dmf::tools

@@ -1,0 +1,147 @@
+#include "tools/liquid.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "engine/simulation.h"
+
+namespace dmf::tools {
+namespace {
+
+using engine::Parameters;
+using engine::Side;
+using engine::Simulation;
+using engine::Vector3d;
+
+constexpr double pi = 3.14159265358979323846;
+
+Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
+  Parameters parameters;
+  parameters.domain.lower = Vector3d::Zero();
+  parameters.domain.upper = size;
+  parameters.domain.lower_side =
+      parameters.domain.upper_side = {Side::periodic, Side::periodic, Side::periodic};
+  parameters.time_step = how.time_step;
+  if (how.lambda > 0) parameters.integrator_lambda = how.lambda;
+  parameters.seed = how.seed;
+  return parameters;
+}
+
+engine::ContactAngleCurve no_wall() { return engine::ContactAngleCurve::lan2016(); }
+
+/// Steps for `settle` tau, then calls look() every `interval` tau for `measure` tau.
+template <class Look>
+void run(Simulation& simulation, double settle, double measure, double interval, Look look) {
+  const double dt = simulation.parameters().time_step;
+  const auto steps_of = [dt](double time) { return static_cast<std::uint64_t>(std::llround(time / dt)); };
+  for (std::uint64_t k = 0; k < steps_of(settle); ++k) simulation.step();
+  const std::uint64_t interval_steps = steps_of(interval);
+  for (std::uint64_t k = 1; k <= steps_of(measure); ++k) {
+    simulation.step();
+    if (k % interval_steps == 0) look();
+  }
+}
+
+}  // namespace
+
+FilmResult run_film(const LiquidRun& how) {
+  const double width = 10, thickness = 10, height = 22;
+  Simulation simulation(periodic_box(how, {width, width, height}), no_wall(), {1, "auto"});
+  simulation.fill_slab({0, 0, 6}, {width, width, 6 + thickness});
+  double tension = 0, density = 0, normal_stress = 0, looks = 0, beads = 0;
+  run(simulation, how.quick ? 10 : 50, how.quick ? 20 : 300, 0.2, [&] {
+    const auto snapshot = simulation.observe({true, false, true});
+    Eigen::Matrix3d stress = *snapshot->virial;
+    double middle = 0;
+    for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
+      const Vector3d v = snapshot->velocities[k].cast<double>();
+      stress += v * v.transpose();
+      middle += snapshot->positions[k].z() / static_cast<double>(snapshot->positions.size());
+    }
+    normal_stress += stress(2, 2);
+    beads = static_cast<double>(snapshot->positions.size());
+    tension += (stress(2, 2) - 0.5 * (stress(0, 0) + stress(1, 1))) / (2 * width * width);
+    for (const Eigen::Vector3f& position : snapshot->positions)
+      if (std::abs(position.z() - middle) < 2.5) density += 1.0 / (5 * width * width);
+    looks += 1;
+  });
+  density /= looks;
+  return {density, tension / looks, normal_stress / looks * density / beads};
+}
+
+FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
+  const double size = 2 * radius + 6;
+  Simulation simulation(periodic_box(how, Vector3d::Constant(size)), no_wall(), {1, "auto"});
+  simulation.add_droplet({Vector3d::Constant(size / 2), radius});
+  double pressure = 0, density = 0, looks = 0, beads = 0, temperature = 0;
+  const double inner = radius - 2.5, volume = 4.0 / 3 * pi * inner * inner * inner;
+  Vector3d momentum = Vector3d::Zero();
+  run(simulation, how.quick ? 10 : 50, how.quick ? 20 : 300, 0.2, [&] {
+    const auto snapshot = simulation.observe({true, false, true});
+    if (snapshot->droplets.empty()) return;
+    for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
+      Vector3d from_centre = snapshot->positions[k].cast<double>() - snapshot->droplets[0].centroid;
+      for (int axis = 0; axis < 3; ++axis)
+        from_centre[axis] -= size * std::nearbyint(from_centre[axis] / size);
+      if (from_centre.norm() > inner) continue;
+      density += 1 / volume;
+      pressure +=
+          (snapshot->velocities[k].cast<double>().squaredNorm() / 3 + snapshot->bead_virials[k]) / volume;
+    }
+    beads += static_cast<double>(snapshot->droplets[0].beads);
+    temperature += snapshot->temperature;
+    momentum = snapshot->momentum;
+    looks += 1;
+  });
+  const double equimolar_radius = std::cbrt(3 * beads / looks / (4 * pi * density / looks));
+  return {density / looks, pressure / looks, equimolar_radius, temperature / looks, momentum.norm()};
+}
+
+BulkResult run_bulk(const LiquidRun& how) {
+  // A whole number of lattice cells at the liquid's own density.
+  const double size = 14 * std::cbrt(4 / Parameters{}.liquid.bulk_density), interval = 0.1;
+  Parameters parameters = periodic_box(how, Vector3d::Constant(size));
+  Simulation simulation(parameters, no_wall(), {1, "auto"});
+  const double density = static_cast<double>(simulation.fill_box()) / (size * size * size);
+  constexpr int modes = 12;  // 3 wave vectors, 2 transverse directions, sine and cosine
+  std::vector<std::array<double, modes>> history;
+  double temperature = 0, pressure = 0;
+  run(simulation, how.quick ? 5 : 30, how.quick ? 30 : 400, interval, [&] {
+    const auto snapshot = simulation.observe({true, false, true});
+    std::array<double, modes> wave{};
+    for (std::size_t k = 0; k < snapshot->positions.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double phase = 2 * pi / size * snapshot->positions[k][axis];
+        for (int t = 1; t < 3; ++t) {
+          const double v = snapshot->velocities[k][(axis + t) % 3];
+          wave[4 * axis + 2 * (t - 1)] += v * std::cos(phase);
+          wave[4 * axis + 2 * (t - 1) + 1] += v * std::sin(phase);
+        }
+      }
+    history.push_back(wave);
+    temperature += snapshot->temperature;
+    pressure += density * snapshot->temperature + snapshot->virial->trace() / 3 / (size * size * size);
+  });
+  const auto correlation = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t t = 0; t + lag < history.size(); ++t)
+      for (int mode = 0; mode < modes; ++mode) sum += history[t][mode] * history[t + lag][mode];
+    return sum / static_cast<double>(history.size() - lag);
+  };
+  // Least squares through ln C(t).
+  const double start = correlation(0);
+  double n = 0, sum_t = 0, sum_l = 0, sum_tt = 0, sum_tl = 0;
+  for (std::size_t lag = 1; lag < history.size() / 4; ++lag) {
+    const double relative = correlation(lag) / start;
+    if (relative > 0.8) continue;
+    if (relative < 0.3) break;
+    const double t = static_cast<double>(lag) * interval, l = std::log(relative);
+    n += 1, sum_t += t, sum_l += l, sum_tt += t * t, sum_tl += t * l;
+  }
+  const double slope = (n * sum_tl - sum_t * sum_l) / (n * sum_tt - sum_t * sum_t);
+  const double wave_number = 2 * pi / size, looks = static_cast<double>(history.size());
+  return {density, temperature / looks, pressure / looks, -slope * density / (wave_number * wave_number)};
+}
+
+}  // namespace dmf::tools
