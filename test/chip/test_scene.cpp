@@ -58,7 +58,7 @@ TEST(ShippedScenes, GradientIsLans) {
 TEST(ShippedScenes, ArrayLooksAsItsCommentDraws) {
   const Scene scene = load_scene("electrode_array");
   EXPECT_EQ(scene.layout.channels_text(), "0-14, 16-23");
-  EXPECT_EQ(scene.layout.overlapping({{-31, -19}, {-29, -19}, {-30, -17}}).at(0), scene.layout.index_of(0));
+  EXPECT_EQ(scene.layout.overlapping({{-26, -16}, {-24, -16}, {-25, -14}}).at(0), scene.layout.index_of(0));
   const auto& top_right = scene.layout.electrodes()[scene.layout.index_of(23)];
   EXPECT_TRUE(top_right.centroid.isApprox(scene.droplets[1].center.head<2>()));
 }
