@@ -1,0 +1,60 @@
+# Messages, services and what a ROS workspace needs to know about this package.
+# genmsg leaves libraries nothing to link: targets that include a generated header depend on
+# ${dmf_sim_EXPORTED_TARGETS} and on ${catkin_EXPORTED_TARGETS}.
+find_package(catkin REQUIRED COMPONENTS
+  diagnostic_msgs
+  geometry_msgs
+  message_generation
+  roscpp
+  rosgraph_msgs
+  sensor_msgs
+  std_msgs
+  std_srvs
+  tf2_ros
+  visualization_msgs)
+
+add_message_files(FILES
+  ChipState.msg
+  Command.msg
+  Droplet.msg
+  DropletArray.msg
+  ElectrodeArray.msg
+  ElectrodeOutline.msg
+  ElectrodeState.msg
+  Event.msg
+  Layout.msg)
+
+add_service_files(FILES
+  Checkpoint.srv
+  DispenseDroplet.srv
+  GetLayout.srv
+  GetState.srv
+  LoadPattern.srv
+  Remove.srv
+  SetElectrodeVoltages.srv
+  SetElectrodes.srv
+  SetHv.srv
+  SetWettability.srv
+  Step.srv)
+
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+
+catkin_package(CATKIN_DEPENDS
+  diagnostic_msgs
+  geometry_msgs
+  message_runtime
+  roscpp
+  rosgraph_msgs
+  sensor_msgs
+  std_msgs
+  std_srvs
+  tf2_ros
+  visualization_msgs)
+
+# genmsg puts the generated headers on every target's include path, the engine's too; src/node asks for them itself.
+set_property(DIRECTORY PROPERTY INCLUDE_DIRECTORIES "")
+
+catkin_install_python(
+  PROGRAMS scripts/demo_controller.py scripts/summarize_run.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(DIRECTORY config launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -1,0 +1,351 @@
+#include "node/convert.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+namespace dmf::node {
+
+namespace {
+
+using engine::Vector3d;
+
+geometry_msgs::Point to_point(const Vector3d& v) {
+  geometry_msgs::Point point;
+  point.x = v.x();
+  point.y = v.y();
+  point.z = v.z();
+  return point;
+}
+
+geometry_msgs::Vector3 to_vector(const Vector3d& v) {
+  geometry_msgs::Vector3 vector;
+  vector.x = v.x();
+  vector.y = v.y();
+  vector.z = v.z();
+  return vector;
+}
+
+double or_nan(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+const char* limit_name(Limit limit) {
+  switch (limit) {
+    case Limit::engine:
+      return "engine";
+    case Limit::max_steps_per_second:
+      return "max_steps_per_second";
+    case Limit::paused:
+      return "paused";
+    case Limit::fault:
+      return "fault";
+  }
+  return "";
+}
+
+geometry_msgs::TransformStamped to_transform(const std::string& child, const Vector3d& position,
+                                             ros::Time stamp) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp = stamp;
+  transform.header.frame_id = kChipFrame;
+  transform.child_frame_id = child;
+  transform.transform.translation = to_vector(position);
+  transform.transform.rotation.w = 1;
+  return transform;
+}
+
+dmf_sim::Droplet to_droplet(const engine::DropletObservation& droplet,
+                            const std::vector<std::uint32_t>& channels, const ConversionContext& context) {
+  const engine::Units& units = context.scene.units;
+  dmf_sim::Droplet message;
+  message.id = droplet.id;
+  message.parents = droplet.parents;
+  message.beads = static_cast<std::uint32_t>(droplet.beads);
+  message.centroid = to_point(droplet.centroid * units.length_m);
+  message.velocity = to_vector(droplet.velocity * units.velocity_m_per_s());
+  message.centroid_mdpd = to_point(droplet.centroid);
+  message.velocity_mdpd = to_vector(droplet.velocity);
+  message.lower = to_point(droplet.lower * units.length_m);
+  message.upper = to_point(droplet.upper * units.length_m);
+  message.volume = droplet.volume * units.volume_m3();
+  message.height = droplet.height * units.length_m;
+  message.footprint_area = droplet.footprint_area * units.area_m2();
+  for (const auto& corner : droplet.footprint) {
+    message.footprint.push_back(
+        to_point(Vector3d(corner.x(), corner.y(), context.plate_z()) * units.length_m));
+  }
+  message.contact_angle_deg = or_nan(droplet.contact_angle);
+  message.advancing_angle_deg = or_nan(droplet.advancing_angle);
+  message.receding_angle_deg = or_nan(droplet.receding_angle);
+  message.channels = channels;
+  return message;
+}
+
+diagnostic_msgs::KeyValue value(const std::string& key, const std::string& text) {
+  diagnostic_msgs::KeyValue pair;
+  pair.key = key;
+  pair.value = text;
+  return pair;
+}
+
+}  // namespace
+
+std::string electrode_frame(std::uint32_t channel) { return fmt::format("chip/electrode_{}", channel); }
+std::string droplet_frame(std::uint32_t id) { return fmt::format("chip/droplet_{}", id); }
+
+ros::Time to_ros_time(std::uint64_t nanoseconds) { return ros::Time().fromNSec(nanoseconds); }
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+dmf_sim::ChipState to_state(const Frame& frame, const ConversionContext& context) {
+  const engine::Snapshot& snapshot = *frame.snapshot;
+  dmf_sim::ChipState state;
+  state.header.stamp = to_ros_time(frame.stamp);
+  state.header.frame_id = kChipFrame;
+  state.scene = context.scene.name;
+  state.seed = frame.seed;
+  state.kernel = frame.kernel;
+  state.threads = static_cast<std::uint32_t>(frame.threads);
+  state.run = frame.run;
+  state.step = snapshot.step;
+  state.time = snapshot.time * context.scene.units.time_s;
+  state.time_mdpd = snapshot.time;
+  state.paused = frame.paused;
+  state.fault = frame.fault;
+  state.steps_per_second = frame.steps_per_second;
+  state.limited_by = limit_name(frame.limit);
+  state.hv_voltage = frame.rail.voltage;
+  state.hv_frequency = frame.rail.frequency;
+  state.hv_enabled = frame.rail.enabled;
+  state.temperature_mdpd = snapshot.temperature;
+  state.target_temperature_mdpd = context.scene.parameters.liquid.temperature;
+  state.momentum_mdpd = to_vector(snapshot.momentum);
+  state.moving_beads = snapshot.moving_beads;
+  state.wall_beads = snapshot.wall_beads;
+  state.vapour_beads = snapshot.vapour_beads;
+  state.droplets = static_cast<std::uint32_t>(snapshot.droplets.size());
+  if (snapshot.state_hash) state.state_hash = hash_text(*snapshot.state_hash);
+  return state;
+}
+
+dmf_sim::ElectrodeArray to_electrodes(const Frame& frame) {
+  dmf_sim::ElectrodeArray message;
+  message.header.stamp = to_ros_time(frame.stamp);
+  message.header.frame_id = kChipFrame;
+  message.step = frame.snapshot->step;
+  message.hv_voltage = frame.rail.voltage;
+  message.hv_frequency = frame.rail.frequency;
+  message.hv_enabled = frame.rail.enabled;
+  message.electrodes.reserve(frame.electrodes.size());
+  for (const chip::ElectrodeState& electrode : frame.electrodes) {
+    dmf_sim::ElectrodeState state;
+    state.channel = electrode.channel;
+    state.on = electrode.on;
+    state.voltage = electrode.voltage;
+    state.contact_angle_deg = electrode.contact_angle;
+    message.electrodes.push_back(state);
+  }
+  return message;
+}
+
+dmf_sim::DropletArray to_droplets(const Frame& frame, const ConversionContext& context) {
+  const engine::Snapshot& snapshot = *frame.snapshot;
+  dmf_sim::DropletArray message;
+  message.header.stamp = to_ros_time(frame.stamp);
+  message.header.frame_id = kChipFrame;
+  message.step = snapshot.step;
+  message.time = snapshot.time * context.scene.units.time_s;
+  message.droplets.reserve(snapshot.droplets.size());
+  for (std::size_t i = 0; i < snapshot.droplets.size(); ++i) {
+    message.droplets.push_back(to_droplet(snapshot.droplets[i], frame.channels.at(i), context));
+  }
+  return message;
+}
+
+dmf_sim::Layout to_layout(const ConversionContext& context) {
+  const chip::Scene& scene = context.scene;
+  const double length = scene.units.length_m;
+  const double z = context.plate_z() * length;
+  dmf_sim::Layout layout;
+  layout.header.stamp = to_ros_time(1'000'000'000);
+  layout.header.frame_id = kChipFrame;
+  layout.scene = scene.name;
+  layout.lower = to_point(scene.parameters.domain.lower * length);
+  layout.upper = to_point(scene.parameters.domain.upper * length);
+  layout.gap = scene.layout.gap() * length;
+  for (const chip::Electrode& electrode : scene.layout.electrodes()) {
+    dmf_sim::ElectrodeOutline message;
+    message.channel = electrode.channel;
+    message.centroid = to_point({electrode.centroid.x() * length, electrode.centroid.y() * length, z});
+    for (const auto& corner : electrode.outline) {
+      message.outline.push_back(to_point({corner.x() * length, corner.y() * length, z}));
+    }
+    message.neighbours = electrode.neighbours;
+    layout.electrodes.push_back(message);
+  }
+  layout.max_voltage = scene.electrowetting.max_voltage;
+  layout.reference_voltage = scene.electrowetting.reference_voltage;
+  layout.reference_angle_deg = scene.electrowetting.reference_angle;
+  layout.rest_angle_deg = scene.electrowetting.rest_angle;
+  layout.saturation_angle_deg = scene.electrowetting.saturation_angle;
+  layout.length_unit = scene.units.length_m;
+  layout.time_unit = scene.units.time_s;
+  layout.mass_unit = scene.units.mass_kg;
+  layout.time_step_mdpd = scene.parameters.time_step;
+  layout.ros_seconds_per_time_unit = context.ros_seconds_per_time_unit;
+  layout.display_scale = context.display_scale;
+  return layout;
+}
+
+dmf_sim::Command to_command(const CommandNote& command, const ConversionContext& context) {
+  dmf_sim::Command message;
+  message.header.stamp = to_ros_time(command.stamp);
+  message.header.frame_id = kChipFrame;
+  message.run = command.run;
+  message.index = command.index;
+  message.step = command.record.step;
+  message.time = command.time * context.scene.units.time_s;
+  message.name = chip::name_of(command.record.command);
+  message.json = chip::to_json(command.record.command);
+  return message;
+}
+
+dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context) {
+  dmf_sim::Event message;
+  message.header.stamp = to_ros_time(event.stamp);
+  message.header.frame_id = kChipFrame;
+  message.run = event.run;
+  message.step = event.step;
+  message.time = event.time * context.scene.units.time_s;
+  message.kind = event.kind;
+  message.before = event.before;
+  message.after = event.after;
+  message.message = event.message;
+  return message;
+}
+
+sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContext& context) {
+  // One record of the cloud, as its fields below describe it.
+  struct Record {
+    float x, y, z;
+    std::uint32_t id, droplet;
+    float speed;
+  };
+  static_assert(sizeof(Record) == 24);
+
+  const engine::Snapshot& snapshot = *frame.snapshot;
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header.stamp = to_ros_time(frame.stamp);
+  cloud.header.frame_id = kChipFrame;
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(snapshot.positions.size());
+  cloud.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+  cloud.is_dense = true;
+  cloud.point_step = sizeof(Record);
+  cloud.row_step = cloud.point_step * cloud.width;
+  const auto add_field = [&cloud](const char* name, std::size_t offset, std::uint8_t type) {
+    sensor_msgs::PointField field;
+    field.name = name;
+    field.offset = static_cast<std::uint32_t>(offset);
+    field.datatype = type;
+    field.count = 1;
+    cloud.fields.push_back(field);
+  };
+  add_field("x", offsetof(Record, x), sensor_msgs::PointField::FLOAT32);
+  add_field("y", offsetof(Record, y), sensor_msgs::PointField::FLOAT32);
+  add_field("z", offsetof(Record, z), sensor_msgs::PointField::FLOAT32);
+  add_field("id", offsetof(Record, id), sensor_msgs::PointField::UINT32);
+  add_field("droplet", offsetof(Record, droplet), sensor_msgs::PointField::UINT32);
+  add_field("speed", offsetof(Record, speed), sensor_msgs::PointField::FLOAT32);
+
+  const auto length = static_cast<float>(context.display_length());
+  const auto velocity = static_cast<float>(context.scene.units.velocity_m_per_s());
+  cloud.data.resize(cloud.row_step);
+  for (std::size_t i = 0; i < snapshot.positions.size(); ++i) {
+    const Eigen::Vector3f p = snapshot.positions[i] * length;
+    const Record record{p.x(),
+                        p.y(),
+                        p.z(),
+                        snapshot.bead_ids[i],
+                        snapshot.bead_droplets[i],
+                        snapshot.velocities[i].norm() * velocity};
+    std::memcpy(cloud.data.data() + i * sizeof(Record), &record, sizeof(Record));
+  }
+  return cloud;
+}
+
+std::vector<geometry_msgs::TransformStamped> droplet_transforms(const Frame& frame,
+                                                                const ConversionContext& context) {
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  for (const auto& droplet : frame.snapshot->droplets) {
+    transforms.push_back(to_transform(droplet_frame(droplet.id), droplet.centroid * context.display_length(),
+                                      to_ros_time(frame.stamp)));
+  }
+  return transforms;
+}
+
+std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
+                                                                  ros::Time stamp) {
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  for (const chip::Electrode& electrode : context.scene.layout.electrodes()) {
+    const Vector3d position(electrode.centroid.x(), electrode.centroid.y(), context.plate_z());
+    transforms.push_back(
+        to_transform(electrode_frame(electrode.channel), position * context.display_length(), stamp));
+  }
+  return transforms;
+}
+
+diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const ConversionContext& context) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const engine::Snapshot& snapshot = *frame.snapshot;
+  // Of the temperature, relative. That of n beads fluctuates by sqrt(2 / 3n): five of these are no news.
+  const double beads = static_cast<double>(std::max<std::size_t>(snapshot.moving_beads, 1));
+  const double tolerance = std::max(0.1, 5 * std::sqrt(2 / (3 * beads)));
+  const double target = context.scene.parameters.liquid.temperature;
+
+  DiagnosticStatus engine;
+  engine.name = "chip: engine";
+  engine.hardware_id = "dmf_sim " + context.scene.name;
+  if (!frame.fault.empty()) {
+    engine.level = DiagnosticStatus::ERROR;
+    engine.message = "halted: " + frame.fault;
+  } else if (snapshot.moving_beads > 0 && std::abs(snapshot.temperature / target - 1) > tolerance) {
+    engine.level = DiagnosticStatus::WARN;
+    engine.message = fmt::format("temperature {:.3f}, thermostat at {:.3f}", snapshot.temperature, target);
+  } else {
+    engine.level = DiagnosticStatus::OK;
+    engine.message = frame.paused ? "paused" : "running";
+  }
+  engine.values = {value("step", fmt::format("{}", snapshot.step)),
+                   value("steps per second", fmt::format("{:.1f}", frame.steps_per_second)),
+                   value("limited by", limit_name(frame.limit)),
+                   value("temperature (k_BT)", fmt::format("{:.4f}", snapshot.temperature)),
+                   value("moving beads", fmt::format("{}", snapshot.moving_beads)),
+                   value("droplets", fmt::format("{}", snapshot.droplets.size())),
+                   value("kernel", frame.kernel),
+                   value("threads", fmt::format("{}", frame.threads))};
+
+  std::size_t on = 0;
+  for (const auto& electrode : frame.electrodes) on += electrode.on ? 1 : 0;
+  DiagnosticStatus rail;
+  rail.name = "chip: high voltage";
+  rail.hardware_id = engine.hardware_id;
+  rail.level = DiagnosticStatus::OK;
+  rail.message = frame.rail.enabled ? fmt::format("{:g} V rms", frame.rail.voltage) : "off";
+  rail.values = {value("voltage (V rms)", fmt::format("{:g}", frame.rail.voltage)),
+                 value("frequency (Hz)", fmt::format("{:g}", frame.rail.frequency)),
+                 value("enabled", frame.rail.enabled ? "true" : "false"),
+                 value("electrodes on", fmt::format("{}", on))};
+
+  diagnostic_msgs::DiagnosticArray array;
+  array.header.stamp = to_ros_time(frame.stamp);
+  array.status = {engine, rail};
+  return array;
+}
+
+}  // namespace dmf::node

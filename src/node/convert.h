@@ -1,0 +1,67 @@
+#pragma once
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <dmf_sim/ChipState.h>
+#include <dmf_sim/Command.h>
+#include <dmf_sim/DropletArray.h>
+#include <dmf_sim/ElectrodeArray.h>
+#include <dmf_sim/Event.h>
+#include <dmf_sim/Layout.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <ros/time.h>
+#include <sensor_msgs/PointCloud2.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "chip/scene.h"
+#include "node/frame.h"
+
+/// From the chip's plain values to ROS messages: pure functions, no node needed. SI units, except in fields
+/// that end in _mdpd; what is only looked at (particles, transforms, markers) is scaled up by the display
+/// scale.
+namespace dmf::node {
+
+/// What the conversions need to know besides a frame. Constant during a run.
+struct ConversionContext {
+  const chip::Scene& scene;
+  double display_scale;              ///< metres on the screen per metre on the chip, > 0
+  double ros_seconds_per_time_unit;  ///< ROS seconds per tau, > 0
+
+  /// Metres on the screen per r_c.
+  double display_length() const { return display_scale * scene.units.length_m; }
+  /// z of the wetting plate, r_c.
+  double plate_z() const { return scene.parameters.domain.lower.z(); }
+};
+
+constexpr const char* kChipFrame = "chip";
+std::string electrode_frame(std::uint32_t channel);  ///< chip/electrode_<channel>
+std::string droplet_frame(std::uint32_t id);         ///< chip/droplet_<id>
+
+ros::Time to_ros_time(std::uint64_t nanoseconds);
+/// 16 hex digits, as dmf_run prints it.
+std::string hash_text(std::uint64_t hash);
+
+dmf_sim::ChipState to_state(const Frame& frame, const ConversionContext& context);
+dmf_sim::ElectrodeArray to_electrodes(const Frame& frame);
+dmf_sim::DropletArray to_droplets(const Frame& frame, const ConversionContext& context);
+dmf_sim::Layout to_layout(const ConversionContext& context);
+dmf_sim::Command to_command(const CommandNote& command, const ConversionContext& context);
+dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context);
+
+/// Fields x, y, z (m on the screen, float32), id, droplet (uint32, droplet 0 is vapour), speed (m/s on the
+/// chip, float32). @pre frame.has_beads.
+sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContext& context);
+
+/// chip -> chip/droplet_<id> at each centroid, unrotated, scaled.
+std::vector<geometry_msgs::TransformStamped> droplet_transforms(const Frame& frame,
+                                                                const ConversionContext& context);
+/// chip -> chip/electrode_<n> at each centroid on the plate, unrotated, scaled.
+std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
+                                                                  ros::Time stamp);
+
+/// The engine's health (ERROR after a fault, WARN when the temperature is more than a tenth off) and the
+/// rail.
+diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const ConversionContext& context);
+
+}  // namespace dmf::node

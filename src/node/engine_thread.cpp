@@ -1,0 +1,437 @@
+#include "node/engine_thread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace dmf::node {
+
+namespace {
+
+std::chrono::nanoseconds period(double rate) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate));
+}
+
+const char* kind_name(engine::DropletEvent::Kind kind) {
+  switch (kind) {
+    case engine::DropletEvent::Kind::appeared:
+      return "appeared";
+    case engine::DropletEvent::Kind::vanished:
+      return "vanished";
+    case engine::DropletEvent::Kind::merged:
+      return "merged";
+    case engine::DropletEvent::Kind::split:
+      return "split";
+  }
+  return "";
+}
+
+std::string describe(const engine::DropletEvent& event) {
+  const std::string from = fmt::format("{}", fmt::join(event.from, ", "));
+  const std::string to = fmt::format("{}", fmt::join(event.to, ", "));
+  switch (event.kind) {
+    case engine::DropletEvent::Kind::appeared:
+      return "droplet " + to + " appeared";
+    case engine::DropletEvent::Kind::vanished:
+      return "droplet " + from + " vanished";
+    case engine::DropletEvent::Kind::merged:
+      return "droplets " + from + " merged into " + to;
+    case engine::DropletEvent::Kind::split:
+      return "droplet " + from + " split into " + to;
+  }
+  return "";
+}
+
+}  // namespace
+
+EngineThread::EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings)
+    : experiment_(std::move(experiment)),
+      settings_(settings),
+      clock_(settings.ros_seconds_per_time_unit),
+      paused_(settings.paused) {
+  thread_ = std::thread([this] { loop(); });
+}
+
+EngineThread::~EngineThread() { stop(); }
+
+void EngineThread::stop() {
+  std::deque<std::function<void()>> abandoned;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    abandoned.swap(requests_);  // their broken promises tell whoever waits
+    requested_.notify_all();
+  }
+  abandoned.clear();
+  if (thread_.joinable()) thread_.join();
+  advance_.reset();
+  outbox_.close();
+}
+
+template <class Request>
+auto EngineThread::ask(Request request) -> decltype(request()) {
+  // std::function wants something that can be copied, which a packaged task can't.
+  auto task = std::make_shared<std::packaged_task<decltype(request())()>>(std::move(request));
+  auto answer = task->get_future();
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw EngineStopped();
+    requests_.emplace_back([task] { (*task)(); });
+    requested_.notify_all();
+  }
+  task.reset();  // the queue's copy is the only one: dropping it breaks the promise
+  try {
+    return answer.get();
+  } catch (const std::future_error&) {
+    throw EngineStopped();
+  }
+}
+
+// ---------------------------------------------------------------------------------------------- the thread
+// itself
+
+void EngineThread::loop() {
+  next_step_ = next_frame_ = next_display_ = Clock::now();
+  rate_.restart(Clock::now(), experiment_->steps());
+  collect_commands();
+  while (run_requests()) {
+    if (moving()) {
+      if (Clock::now() >= next_step_) {
+        step();
+      } else {
+        paced_ = true;
+        wait_until(std::min(next_step_, next_frame_));
+      }
+    } else {
+      wait_until(next_frame_);
+    }
+    publish_if_due();
+  }
+}
+
+bool EngineThread::run_requests() {
+  while (true) {
+    std::function<void()> request;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return false;
+      if (requests_.empty()) return true;
+      request = std::move(requests_.front());
+      requests_.pop_front();
+    }
+    request();
+  }
+}
+
+void EngineThread::wait_until(Clock::time_point deadline) {
+  std::unique_lock lock(mutex_);
+  requested_.wait_until(lock, deadline, [this] { return stopping_ || !requests_.empty(); });
+}
+
+void EngineThread::step() {
+  try {
+    experiment_->step();
+  } catch (
+      const std::exception& error) {  // an Instability, or memory that ran out: the state can't be trusted
+    halt(error.what());
+    return;
+  }
+  collect_scheduled();
+  if (settings_.max_steps_per_second > 0) {
+    // A step that came late is not made up for: the limit holds from step to step.
+    next_step_ = std::max(next_step_ + period(settings_.max_steps_per_second), Clock::now());
+  }
+  const std::uint64_t stamp = clock_.nanoseconds(time_of(experiment_->steps()));
+  if (stamp >= last_tick_ + kClockTick) {
+    outbox_.put_clock(stamp);
+    last_tick_ = stamp;
+  }
+  if (advance_ && ++advance_->done == advance_->asked) {
+    collect_events();
+    end_advance(true, fmt::format("{} steps done", advance_->asked));
+  }
+}
+
+void EngineThread::halt(const std::string& reason) {
+  fault_ = experiment_->fault().empty() ? reason : experiment_->fault();
+  paused_ = true;
+  collect_events();
+  note("fault", fault_);
+  end_advance(false, "the run was halted: " + fault_);
+  publish_soon();
+}
+
+void EngineThread::end_advance(bool success, const std::string& message) {
+  if (!advance_) return;
+  std::promise<Outcome> answer = std::move(advance_->answer);
+  advance_.reset();
+  publish_soon();
+  answer.set_value({success, message, experiment_->steps()});
+}
+
+void EngineThread::begin_run(double old_time) {
+  ++run_;
+  fault_.clear();
+  last_snapshot_.reset();
+  clock_.start_run(old_time, time_of(experiment_->steps()));
+  rate_.restart(Clock::now(), experiment_->steps());
+  commands_seen_ = 0;
+  collect_commands();
+  publish_soon();
+}
+
+void EngineThread::publish_if_due() {
+  const Clock::time_point now = Clock::now();
+  if (now < next_frame_) return;
+  const double rate = moving() ? settings_.publish_rate : std::min(settings_.publish_rate, kIdleRate);
+  // On the beat, but a frame that came late is not made up for.
+  next_frame_ = std::max(next_frame_ + period(rate), now);
+  engine::ObserveRequest request;
+  if (beads_wanted_ && now >= next_display_) {
+    request.beads = true;
+    next_display_ = std::max(next_display_ + period(settings_.display_rate), now);
+  }
+  collect_events();
+  auto frame = make_frame(request);
+  last_tick_ = frame->stamp;
+  paced_ = false;
+  outbox_.put(std::move(frame));
+}
+
+std::shared_ptr<const Frame> EngineThread::make_frame(const engine::ObserveRequest& request) {
+  auto frame = std::make_shared<Frame>();
+  if (fault_.empty()) last_snapshot_ = experiment_->observe(request);
+  // A fault before the first look leaves nothing that could be shown.
+  frame->snapshot = last_snapshot_ ? last_snapshot_ : std::make_shared<engine::Snapshot>();
+  frame->has_beads = fault_.empty() && request.beads;
+  frame->stamp = clock_.nanoseconds(time_of(experiment_->steps()));
+  frame->run = run_;
+  frame->seed = seed();
+  frame->kernel = experiment_->simulation().kernel();
+  frame->threads = experiment_->simulation().threads();
+  frame->electrodes = experiment_->electrodes();
+  frame->rail = experiment_->rail();
+  for (const auto& droplet : frame->snapshot->droplets) {
+    frame->channels.push_back(experiment_->channels_under(droplet));
+  }
+  frame->paused = paused_;
+  frame->fault = fault_;
+  if (moving()) {
+    frame->steps_per_second = rate_.update(Clock::now(), experiment_->steps());
+  } else {
+    rate_.restart(Clock::now(), experiment_->steps());
+  }
+  frame->limit = !fault_.empty() ? Limit::fault
+                 : !moving()     ? Limit::paused
+                 : paced_        ? Limit::max_steps_per_second
+                                 : Limit::engine;
+  return frame;
+}
+
+void EngineThread::collect_commands() {
+  const auto& history = experiment_->history();
+  for (; commands_seen_ < history.size(); ++commands_seen_) {
+    const chip::CommandRecord& record = history[commands_seen_];
+    CommandNote command;
+    command.time = time_of(record.step);
+    command.stamp = clock_.nanoseconds(command.time);
+    command.run = run_;
+    command.index = static_cast<std::uint32_t>(commands_seen_);
+    command.record = record;
+    outbox_.put(std::move(command));
+    // The history of a restored run was announced when it happened.
+    const auto* pattern = std::get_if<chip::LoadPattern>(&record.command);
+    if (pattern && record.step == experiment_->steps()) note("pattern", pattern->name);
+  }
+}
+
+void EngineThread::collect_scheduled() {
+  for (const chip::ScheduledReply& played : experiment_->take_scheduled_replies()) {
+    const char* verdict = played.reply.success ? "" : "refused, ";
+    note("scheduled", fmt::format("{}: {}{}", chip::name_of(played.command), verdict, played.reply.message),
+         played.reply.step);
+  }
+}
+
+void EngineThread::collect_events() {
+  for (const engine::DropletEvent& event : experiment_->take_events()) {
+    EventNote result;
+    result.step = event.step;
+    result.time = time_of(event.step);
+    result.stamp = clock_.nanoseconds(result.time);
+    result.run = run_;
+    result.kind = kind_name(event.kind);
+    result.before = event.from;
+    result.after = event.to;
+    result.message = describe(event);
+    outbox_.put(std::move(result));
+  }
+}
+
+void EngineThread::note(const std::string& kind, const std::string& message) {
+  note(kind, message, experiment_->steps());
+}
+
+void EngineThread::note(const std::string& kind, const std::string& message, std::uint64_t step) {
+  EventNote result;
+  result.step = step;
+  result.time = time_of(result.step);
+  result.stamp = clock_.nanoseconds(result.time);
+  result.run = run_;
+  result.kind = kind;
+  result.message = message;
+  outbox_.put(std::move(result));
+}
+
+double EngineThread::time_of(std::uint64_t step) const {
+  return static_cast<double>(step) * experiment_->simulation().parameters().time_step;
+}
+
+std::uint64_t EngineThread::seed() const { return experiment_->simulation().parameters().seed; }
+
+// ------------------------------------------------------------------------------------------------------
+// requests
+
+chip::Reply EngineThread::apply(const chip::Command& command) {
+  return ask([this, &command] {
+    const bool reset = std::holds_alternative<chip::Reset>(command);
+    if (!reset && !fault_.empty()) {
+      chip::Reply refused;
+      refused.message = "refused, the run was halted: " + fault_ + "; allowed: ~reset, ~load_checkpoint";
+      refused.step = experiment_->steps();
+      return refused;
+    }
+    const double old_time = time_of(experiment_->steps());
+    if (reset) collect_events();
+    chip::Reply reply = experiment_->apply(command);
+    if (!reply.success) return reply;
+    if (reset) {
+      end_advance(false, "ended by ~reset");
+      begin_run(old_time);
+      note("reset", "the scene from its start");
+      if (paused_) reply.message += "; paused, ~unpause_physics starts it";
+    } else {
+      collect_commands();
+      collect_scheduled();
+      if (paused_) {
+        reply.message += "; paused, it acts from the next step on";
+        publish_soon();
+      }
+    }
+    return reply;
+  });
+}
+
+Outcome EngineThread::pause() {
+  return ask([this]() -> Outcome {
+    const std::uint64_t step = experiment_->steps();
+    if (!fault_.empty()) return {true, "already halted by a fault: " + fault_, step};
+    end_advance(false, "ended by ~pause_physics");
+    if (paused_) return {true, "was paused already", step};
+    paused_ = true;
+    note("paused", "");
+    publish_soon();
+    return {true, fmt::format("paused at step {}", step), step};
+  });
+}
+
+Outcome EngineThread::resume() {
+  return ask([this]() -> Outcome {
+    const std::uint64_t step = experiment_->steps();
+    if (!fault_.empty()) {
+      return {false, "refused, the run was halted: " + fault_ + "; allowed: ~reset, ~load_checkpoint", step};
+    }
+    if (!paused_) return {true, "was running already", step};
+    paused_ = false;
+    rate_.restart(Clock::now(), step);
+    note("unpaused", "");
+    publish_soon();
+    return {true, fmt::format("goes on from step {}", step), step};
+  });
+}
+
+Outcome EngineThread::advance(std::uint64_t steps) {
+  using Answer = std::variant<Outcome, std::future<Outcome>>;
+  Answer answer = ask([this, steps]() -> Answer {
+    const std::uint64_t now = experiment_->steps();
+    if (steps < 1 || steps > kMaxAdvance) {
+      return Outcome{false, fmt::format("steps: {}, allowed: 1 to {}", steps, kMaxAdvance), now};
+    }
+    if (!fault_.empty()) {
+      return Outcome{false, "refused, the run was halted: " + fault_ + "; allowed: ~reset, ~load_checkpoint",
+                     now};
+    }
+    if (!paused_) return Outcome{false, "refused, the run is not paused; call ~pause_physics first", now};
+    if (advance_) {
+      return Outcome{
+          false,
+          fmt::format("refused, another ~step is under way ({} of {} steps done); wait for it or end it "
+                      "with ~pause_physics",
+                      advance_->done, advance_->asked),
+          now};
+    }
+    advance_.emplace();
+    advance_->asked = steps;
+    rate_.restart(Clock::now(), now);
+    publish_soon();  // from here on at the full rate
+    return advance_->answer.get_future();
+  });
+  if (auto* refused = std::get_if<Outcome>(&answer)) return *refused;
+  try {
+    return std::get<std::future<Outcome>>(answer).get();
+  } catch (const std::future_error&) {
+    throw EngineStopped();
+  }
+}
+
+std::shared_ptr<const Frame> EngineThread::inspect(bool hash) {
+  return ask([this, hash] {
+    engine::ObserveRequest request;
+    request.hash = hash;
+    return make_frame(request);
+  });
+}
+
+SavedRun EngineThread::save() {
+  return ask([this] {
+    SavedRun saved;
+    saved.outcome.step = experiment_->steps();
+    if (!fault_.empty()) {
+      saved.outcome.message = "refused, the run was halted: " + fault_ + "; its state is not worth keeping";
+      return saved;
+    }
+    engine::ObserveRequest request;
+    request.hash = true;
+    saved.state = experiment_->save();
+    saved.seed = seed();
+    saved.time = time_of(experiment_->steps());
+    saved.hash = experiment_->observe(request)->state_hash.value_or(0);
+    saved.outcome.success = true;
+    return saved;
+  });
+}
+
+Outcome EngineThread::load(const std::string& state, const std::string& name) {
+  return ask([this, &state, &name]() -> Outcome {
+    const double old_time = time_of(experiment_->steps());
+    collect_events();
+    try {
+      experiment_->load(state);
+    } catch (const engine::InvalidInput& error) {
+      return {false, error.what(), experiment_->steps()};
+    }
+    end_advance(false, "ended by ~load_checkpoint");
+    begin_run(old_time);
+    note("checkpoint_loaded", name);
+    return {true, "", experiment_->steps()};
+  });
+}
+
+void EngineThread::announce(const std::string& kind, const std::string& message) {
+  ask([this, &kind, &message] { note(kind, message); });
+}
+
+}  // namespace dmf::node

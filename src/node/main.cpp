@@ -1,0 +1,25 @@
+#include <ros/init.h>
+#include <ros/node_handle.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "chip/scene.h"
+#include "engine/wait_policy.h"
+#include "node/node.h"
+#include "node/options.h"
+
+int main(int argc, char** argv) {
+  dmf::engine::prefer_sleeping_threads(argv);
+  ros::init(argc, argv, "chip");
+  try {
+    const dmf::node::Options options = dmf::node::load_options(ros::NodeHandle("~"));
+    const dmf::chip::Scene scene = dmf::chip::load_scene(options.scene);
+    const dmf::node::Node node(options, scene);
+    ros::waitForShutdown();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "chip: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,73 @@
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "node/frame.h"
+
+namespace dmf::node {
+
+/// What the engine thread leaves for the publisher thread. The engine never waits here: a frame that was not
+/// taken yet is replaced by the newer one, and so is the clock. Commands and events are kept, in order, until
+/// taken.
+class Outbox {
+ public:
+  struct Delivery {
+    std::shared_ptr<const Frame> frame;  ///< null when there is no new one
+    std::vector<CommandNote> commands;
+    std::vector<EventNote> events;
+    std::uint64_t clock = 0;  ///< newest ROS time, ns; 0 when there is no news
+  };
+
+  void put(std::shared_ptr<const Frame> frame) {
+    change([&](Delivery& d) {
+      d.clock = frame->stamp;
+      d.frame = std::move(frame);
+    });
+  }
+  void put(CommandNote command) {
+    change([&](Delivery& d) { d.commands.push_back(std::move(command)); });
+  }
+  void put(EventNote event) {
+    change([&](Delivery& d) { d.events.push_back(std::move(event)); });
+  }
+  void put_clock(std::uint64_t nanoseconds) {
+    change([&](Delivery& d) { d.clock = nanoseconds; });
+  }
+
+  /// Takes what there is, waiting for it no longer than `timeout`. False when there was nothing.
+  bool take(Delivery& delivery, std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [this] { return filled_ || closed_; });
+    delivery = std::exchange(waiting_, {});
+    return std::exchange(filled_, false);
+  }
+
+  /// Wakes whoever waits in take(), now and from then on.
+  void close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  template <class Change>
+  void change(const Change& apply) {
+    const std::lock_guard lock(mutex_);
+    apply(waiting_);
+    filled_ = true;
+    changed_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Delivery waiting_;
+  bool filled_ = false;
+  bool closed_ = false;
+};
+
+}  // namespace dmf::node

@@ -1,0 +1,151 @@
+#include "node/publisher.h"
+
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+#include "node/markers.h"
+
+namespace dmf::node {
+
+namespace {
+
+constexpr auto kPatience = std::chrono::milliseconds(200);    // in which new subscribers are noticed
+constexpr auto kDiagnosticsPeriod = std::chrono::seconds(1);  // what diagnostic tools expect
+constexpr auto kChipMarkerPeriod = std::chrono::seconds(1);   // so that a bag can be entered anywhere
+constexpr std::uint32_t kStateQueue = 10, kDisplayQueue = 2, kRecordQueue = 10000;
+
+bool same(const dmf_sim::ElectrodeArray& a, const dmf_sim::ElectrodeArray& b) {
+  return a.hv_voltage == b.hv_voltage && a.hv_frequency == b.hv_frequency && a.hv_enabled == b.hv_enabled &&
+         a.electrodes == b.electrodes;
+}
+
+}  // namespace
+
+Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
+                     const ConversionContext& context)
+    : engine_(engine), context_(context) {
+  clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kStateQueue);
+  diagnostics_ = handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kStateQueue);
+  state_ = private_handle.advertise<dmf_sim::ChipState>("state", kStateQueue);
+  electrodes_ = private_handle.advertise<dmf_sim::ElectrodeArray>("electrodes", kStateQueue, true);
+  droplets_ = private_handle.advertise<dmf_sim::DropletArray>("droplets", kStateQueue);
+  particles_ = private_handle.advertise<sensor_msgs::PointCloud2>("particles", kDisplayQueue);
+  markers_ = private_handle.advertise<visualization_msgs::MarkerArray>("markers", kDisplayQueue);
+  commands_ = private_handle.advertise<dmf_sim::Command>(
+      "commands", kRecordQueue,
+      [this](const ros::SingleSubscriberPublisher& subscriber) { replay_commands(subscriber); });
+  events_ = private_handle.advertise<dmf_sim::Event>("events", kRecordQueue);
+  layout_ = private_handle.advertise<dmf_sim::Layout>("layout", 1, true);
+
+  layout_.publish(to_layout(context_));
+  static_transforms_.sendTransform(electrode_transforms(context_, to_ros_time(RunClock::kStart)));
+  thread_ = std::thread([this] { loop(); });
+}
+
+Publisher::~Publisher() { stop(); }
+
+void Publisher::stop() {
+  stopping_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Publisher::loop() {
+  Outbox::Delivery delivery;
+  while (!stopping_) {
+    engine_.want_beads(particles_.getNumSubscribers() + markers_.getNumSubscribers() > 0);
+    if (engine_.outbox().take(delivery, kPatience)) publish(delivery);
+  }
+}
+
+void Publisher::publish(const Outbox::Delivery& delivery) {
+  // The clock first: what follows then never lies in its subscribers' future.
+  if (delivery.clock > 0) publish_clock(delivery.clock);
+  for (const CommandNote& command : delivery.commands) publish_command(command);
+  for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));
+  if (delivery.frame) publish_frame(*delivery.frame);
+}
+
+void Publisher::publish_clock(std::uint64_t nanoseconds) {
+  rosgraph_msgs::Clock message;
+  message.clock = to_ros_time(nanoseconds);
+  clock_.publish(message);
+}
+
+void Publisher::publish_command(const CommandNote& note) {
+  const dmf_sim::Command message = to_command(note, context_);
+  const std::lock_guard lock(history_mutex_);
+  if (!history_.empty() && history_.back().run != message.run) history_.clear();
+  history_.push_back(message);
+  commands_.publish(message);
+}
+
+void Publisher::replay_commands(const ros::SingleSubscriberPublisher& subscriber) {
+  const std::lock_guard lock(history_mutex_);
+  for (const dmf_sim::Command& command : history_) subscriber.publish(command);
+}
+
+void Publisher::publish_frame(const Frame& frame) {
+  state_.publish(to_state(frame, context_));
+  publish_electrodes(frame);
+  droplets_.publish(to_droplets(frame, context_));
+  publish_transforms(frame);
+  if (frame.has_beads) {
+    if (particles_.getNumSubscribers() > 0) particles_.publish(to_particles(frame, context_));
+    publish_markers(frame);
+  }
+  publish_diagnostics(frame);
+}
+
+void Publisher::publish_electrodes(const Frame& frame) {
+  dmf_sim::ElectrodeArray message = to_electrodes(frame);
+  if (electrodes_published_ && same(message, last_electrodes_)) return;
+  electrodes_.publish(message);
+  last_electrodes_ = std::move(message);
+  electrodes_published_ = true;
+  chip_changed_ = true;
+}
+
+void Publisher::publish_transforms(const Frame& frame) {
+  // tf warns about every transform that it gets twice with one stamp, as a paused chip would send it.
+  if (frame.stamp == transform_stamp_) return;
+  transform_stamp_ = frame.stamp;
+  transforms_.sendTransform(droplet_transforms(frame, context_));
+}
+
+void Publisher::publish_markers(const Frame& frame) {
+  const std::uint32_t subscribers = markers_.getNumSubscribers();
+  const bool joined = subscribers > marker_subscribers_;
+  marker_subscribers_ = subscribers;
+  if (subscribers == 0) return;
+  visualization_msgs::MarkerArray array = droplet_markers(frame, context_);
+  const auto add = [&array](visualization_msgs::MarkerArray more) {
+    std::move(more.markers.begin(), more.markers.end(), std::back_inserter(array.markers));
+  };
+
+  std::set<std::uint32_t> present, gone;
+  for (const auto& droplet : frame.snapshot->droplets) present.insert(droplet.id);
+  std::set_difference(drawn_droplets_.begin(), drawn_droplets_.end(), present.begin(), present.end(),
+                      std::inserter(gone, gone.end()));
+  drawn_droplets_ = std::move(present);
+  add(deletions(gone, to_ros_time(frame.stamp)));
+
+  if (joined || chip_changed_ || Clock::now() >= next_chip_markers_) {
+    add(chip_markers(frame, context_));
+    chip_changed_ = false;
+    next_chip_markers_ = Clock::now() + kChipMarkerPeriod;
+  }
+  markers_.publish(array);
+}
+
+void Publisher::publish_diagnostics(const Frame& frame) {
+  if (Clock::now() < next_diagnostics_) return;
+  next_diagnostics_ = Clock::now() + kDiagnosticsPeriod;
+  diagnostics_.publish(to_diagnostics(frame, context_));
+}
+
+}  // namespace dmf::node

@@ -1,0 +1,176 @@
+#include "node/services.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace dmf::node {
+
+namespace {
+
+template <class Response>
+void copy(const chip::Reply& reply, Response& response) {
+  response.success = reply.success;
+  response.message = reply.message;
+}
+
+}  // namespace
+
+// Each callback returns true: a refusal is an answer, not a failed call. Only std_srvs/Empty has no room for
+// one; roscpp sends the text of an exception to the caller as the call's error.
+
+Services::Services(ros::NodeHandle& private_handle, EngineThread& engine, const ConversionContext& context,
+                   chip::CheckpointFolder checkpoints)
+    : engine_(engine), context_(context), checkpoints_(std::move(checkpoints)) {
+  const auto advertise = [&](const char* name, auto callback) {
+    servers_.push_back(private_handle.advertiseService(name, callback, this));
+  };
+  advertise("set_electrodes", &Services::set_electrodes);
+  advertise("set_hv", &Services::set_hv);
+  advertise("set_electrode_voltages", &Services::set_electrode_voltages);
+  advertise("set_wettability", &Services::set_wettability);
+  advertise("load_pattern", &Services::load_pattern);
+  advertise("dispense_droplet", &Services::dispense_droplet);
+  advertise("remove", &Services::remove);
+  advertise("pause_physics", &Services::pause);
+  advertise("unpause_physics", &Services::unpause);
+  advertise("step", &Services::step);
+  advertise("reset", &Services::reset);
+  advertise("save_checkpoint", &Services::save_checkpoint);
+  advertise("load_checkpoint", &Services::load_checkpoint);
+  advertise("get_layout", &Services::get_layout);
+  advertise("get_state", &Services::get_state);
+}
+
+bool Services::set_electrodes(dmf_sim::SetElectrodes::Request& request,
+                              dmf_sim::SetElectrodes::Response& response) {
+  const chip::Reply reply = engine_.apply(chip::SetElectrodes{request.channels});
+  copy(reply, response);
+  response.applied_channels = reply.applied_channels;
+  return true;
+}
+
+bool Services::set_hv(dmf_sim::SetHv::Request& request, dmf_sim::SetHv::Response& response) {
+  copy(engine_.apply(chip::SetHv{request.voltage, request.frequency, request.enabled != 0}), response);
+  return true;
+}
+
+bool Services::set_electrode_voltages(dmf_sim::SetElectrodeVoltages::Request& request,
+                                      dmf_sim::SetElectrodeVoltages::Response& response) {
+  copy(engine_.apply(chip::SetElectrodeVoltages{request.channels, request.voltages}), response);
+  return true;
+}
+
+bool Services::set_wettability(dmf_sim::SetWettability::Request& request,
+                               dmf_sim::SetWettability::Response& response) {
+  copy(engine_.apply(chip::SetWettability{request.positions, request.contact_angles_deg}), response);
+  return true;
+}
+
+bool Services::load_pattern(dmf_sim::LoadPattern::Request& request,
+                            dmf_sim::LoadPattern::Response& response) {
+  copy(engine_.apply(chip::LoadPattern{request.name}), response);
+  return true;
+}
+
+bool Services::dispense_droplet(dmf_sim::DispenseDroplet::Request& request,
+                                dmf_sim::DispenseDroplet::Response& response) {
+  copy(engine_.apply(chip::DispenseDroplet{request.x, request.y, request.volume}), response);
+  return true;
+}
+
+bool Services::remove(dmf_sim::Remove::Request& request, dmf_sim::Remove::Response& response) {
+  copy(engine_.apply(chip::Remove{request.droplet}), response);
+  return true;
+}
+
+bool Services::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  engine_.pause();
+  return true;
+}
+
+bool Services::unpause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  const Outcome outcome = engine_.resume();
+  if (!outcome.success) throw std::runtime_error(outcome.message);
+  return true;
+}
+
+bool Services::step(dmf_sim::Step::Request& request, dmf_sim::Step::Response& response) {
+  const Outcome outcome = engine_.advance(request.steps);
+  response.success = outcome.success;
+  response.message = outcome.message;
+  response.step = outcome.step;
+  return true;
+}
+
+bool Services::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  copy(engine_.apply(chip::Reset{}), response);
+  return true;
+}
+
+bool Services::save_checkpoint(dmf_sim::Checkpoint::Request& request,
+                               dmf_sim::Checkpoint::Response& response) {
+  SavedRun run = engine_.save();
+  response.message = run.outcome.message;
+  if (!run.outcome.success) return true;
+  chip::Checkpoint checkpoint;
+  checkpoint.scene = context_.scene.name;
+  checkpoint.seed = run.seed;
+  checkpoint.step = run.outcome.step;
+  checkpoint.time = run.time;
+  checkpoint.state_hash = run.hash;
+  checkpoint.state = std::move(run.state);
+  try {
+    checkpoints_.write(request.path, checkpoint);  // on this thread: the engine does not wait for the disk
+  } catch (const std::exception& error) {
+    response.message = error.what();
+    return true;
+  }
+  response.success = true;
+  response.message =
+      fmt::format("step {}, state hash {}, in {}", checkpoint.step, hash_text(checkpoint.state_hash),
+                  (checkpoints_.path() / request.path).string());
+  engine_.announce(dmf_sim::Event::CHECKPOINT_SAVED, response.message);
+  return true;
+}
+
+bool Services::load_checkpoint(dmf_sim::Checkpoint::Request& request,
+                               dmf_sim::Checkpoint::Response& response) {
+  chip::Checkpoint checkpoint;
+  try {
+    checkpoint = checkpoints_.read(request.path);
+  } catch (const std::exception& error) {
+    response.message = error.what();
+    return true;
+  }
+  if (checkpoint.scene != context_.scene.name) {
+    response.message = fmt::format("checkpoint \"{}\" is of scene {}, allowed: one of scene {}", request.path,
+                                   checkpoint.scene, context_.scene.name);
+    return true;
+  }
+  const Outcome outcome = engine_.load(checkpoint.state, request.path);
+  response.success = outcome.success;
+  response.message = outcome.success ? fmt::format("goes on from step {}, state hash {}", outcome.step,
+                                                   hash_text(checkpoint.state_hash))
+                                     : outcome.message;
+  return true;
+}
+
+bool Services::get_layout(dmf_sim::GetLayout::Request&, dmf_sim::GetLayout::Response& response) {
+  response.layout = to_layout(context_);
+  response.success = true;
+  response.message = fmt::format("channels {}", context_.scene.layout.channels_text());
+  return true;
+}
+
+bool Services::get_state(dmf_sim::GetState::Request& request, dmf_sim::GetState::Response& response) {
+  const auto frame = engine_.inspect(request.hash != 0);
+  response.state = to_state(*frame, context_);
+  response.success = frame->fault.empty();
+  response.message = frame->fault.empty()
+                         ? fmt::format("step {}", frame->snapshot->step)
+                         : "the state is the last sound one, the run was halted: " + frame->fault;
+  return true;
+}
+
+}  // namespace dmf::node

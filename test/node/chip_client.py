@@ -1,0 +1,67 @@
+"""What the node's tests share: proxies of all services, and waiting for messages by wall time."""
+import threading
+import time
+
+import rospy
+from dmf_sim import srv
+from std_srvs.srv import Empty, Trigger
+
+SERVICES = {
+    "set_electrodes": srv.SetElectrodes,
+    "set_hv": srv.SetHv,
+    "set_electrode_voltages": srv.SetElectrodeVoltages,
+    "set_wettability": srv.SetWettability,
+    "load_pattern": srv.LoadPattern,
+    "dispense_droplet": srv.DispenseDroplet,
+    "remove": srv.Remove,
+    "pause_physics": Empty,
+    "unpause_physics": Empty,
+    "step": srv.Step,
+    "reset": Trigger,
+    "save_checkpoint": srv.Checkpoint,
+    "load_checkpoint": srv.Checkpoint,
+    "get_layout": srv.GetLayout,
+    "get_state": srv.GetState,
+}
+
+
+class Chip:
+    """The chip node's services as methods: chip.step(10), chip.set_hv(63, 1000, True)."""
+
+    def __init__(self, name="/chip"):
+        for service, kind in SERVICES.items():
+            rospy.wait_for_service(f"{name}/{service}", 20)
+            setattr(self, service, rospy.ServiceProxy(f"{name}/{service}", kind, persistent=True))
+
+    def hash(self):
+        return self.get_state(True).state.state_hash
+
+
+class Listener:
+    """Keeps all messages of a topic."""
+
+    def __init__(self, topic, kind):
+        self.messages = []
+        self._changed = threading.Condition()
+        self._subscriber = rospy.Subscriber(topic, kind, self._on_message, queue_size=None)
+
+    def _on_message(self, message):
+        with self._changed:
+            self.messages.append(message)
+            self._changed.notify_all()
+
+    def wait(self, condition=lambda message: True, timeout=20):
+        """The first message, of those that came or come, that meets the condition."""
+        until = time.monotonic() + timeout
+        looked_at = 0
+        with self._changed:
+            while True:
+                for message in self.messages[looked_at:]:
+                    if condition(message):
+                        return message
+                looked_at = len(self.messages)
+                if not self._changed.wait(until - time.monotonic()) and time.monotonic() >= until:
+                    raise AssertionError(f"waited {timeout} s in vain on {self._subscriber.name}")
+
+    def stop(self):
+        self._subscriber.unregister()

@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""The chip while it runs, over its public interface only."""
+import os
+import statistics
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from dmf_sim.msg import ChipState, DropletArray
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import PointCloud2
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from chip_client import Chip, Listener  # noqa: E402
+
+
+class RunTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("run_test")
+        cls.chip = Chip()
+        cls.clock = Listener("/clock", Clock)
+        cls.states = Listener("/chip/state", ChipState)
+        cls.droplets = Listener("/chip/droplets", DropletArray)
+
+    def setUp(self):
+        self.chip.reset()
+        self.run_number = self.chip.get_state(False).state.run
+        self.chip.unpause_physics()
+
+    def test_a_droplet_follows_the_voltage(self):
+        layout = self.chip.get_layout().layout
+        self.assertTrue(self.chip.set_hv(layout.reference_voltage, 1000, True).success)
+        target = layout.electrodes[1]
+        self.assertTrue(self.chip.set_electrodes([target.channel]).success)
+        stamp = self.states.wait(lambda s: s.hv_enabled and s.run == self.run_number).header.stamp
+        arrived = self.droplets.wait(
+            lambda m: m.header.stamp > stamp and abs(m.droplets[0].centroid.x - target.centroid.x) < 1.5e-5, 60)
+        self.assertIn(target.channel, arrived.droplets[0].channels)
+        self.assertEqual(len(arrived.droplets), 1)
+
+    def test_the_clock_is_never_zero_and_never_steps_back(self):
+        self.clock.wait()
+        self.chip.reset()
+        self.chip.save_checkpoint("clock")
+        time.sleep(0.5)
+        self.chip.load_checkpoint("clock")
+        time.sleep(0.5)
+        times = [message.clock.to_nsec() for message in self.clock.messages]
+        self.assertGreaterEqual(times[0], 1_000_000_000)
+        self.assertEqual(times, sorted(times))
+        steps = [b - a for a, b in zip(times, times[1:])]
+        # Wanted: at most 10 ms. A machine under load may delay the publisher, so the usual step counts.
+        self.assertLessEqual(statistics.median(steps), 12_000_000)
+
+    def test_pause_holds_the_run_and_still_talks(self):
+        self.chip.pause_physics()
+        held = self.chip.get_state(True).state
+        self.assertTrue(held.paused)
+        before = len(self.states.messages)
+        time.sleep(1.5)
+        self.assertEqual(self.chip.hash(), held.state_hash)
+        self.assertGreater(len(self.states.messages) - before, 2)
+        self.chip.unpause_physics()
+        self.states.wait(lambda s: s.run == self.run_number and s.step > held.step and not s.paused)
+
+    def test_state_comes_at_the_asked_rate(self):
+        before = len(self.states.messages)
+        begin = time.monotonic()
+        time.sleep(2)
+        rate = (len(self.states.messages) - before) / (time.monotonic() - begin)
+        self.assertGreater(rate, 20)
+        self.assertLess(rate, 33)
+
+    def test_stamps_follow_the_clock(self):
+        a = self.states.wait(lambda s: s.run == self.run_number and s.step > 0)
+        b = self.states.wait(lambda s: s.run == self.run_number and s.step > a.step + 500)
+        self.assertAlmostEqual((b.header.stamp - a.header.stamp).to_sec(), (b.time_mdpd - a.time_mdpd) * 0.02,
+                               delta=1e-8)
+
+    def test_frames_are_scaled_for_the_screen(self):
+        static = Listener("/tf_static", TFMessage)
+        frames = {t.child_frame_id: t for t in static.wait().transforms}
+        self.assertEqual(sorted(frames), [f"chip/electrode_{n}" for n in range(4)])
+        self.assertAlmostEqual(frames["chip/electrode_0"].transform.translation.x, -0.09, delta=1e-9)
+        moving = Listener("/tf", TFMessage).wait().transforms
+        self.assertEqual([t.child_frame_id for t in moving], ["chip/droplet_1"])
+        self.assertEqual(moving[0].header.frame_id, "chip")
+
+    def test_beads_are_published_to_whoever_listens(self):
+        cloud = Listener("/chip/particles", PointCloud2)
+        message = cloud.wait(lambda m: m.width > 0)
+        state = self.chip.get_state(False).state
+        self.assertEqual(message.width, state.moving_beads)
+        cloud.stop()
+        markers = Listener("/chip/markers", MarkerArray)
+        # A new listener gets the whole chip at once, not only what moves.
+        found = {marker.ns for marker in markers.wait().markers}
+        self.assertLessEqual({"plate", "electrodes", "electrode_labels", "droplets", "droplet_labels"}, found)
+        markers.stop()
+
+    def test_diagnostics_are_well(self):
+        report = Listener("/diagnostics", DiagnosticArray).wait()
+        self.assertEqual([s.level for s in report.status], [DiagnosticStatus.OK] * 2, report)
+        self.assertEqual(report.status[0].name, "chip: engine")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("dmf_sim", "run_test", RunTest)

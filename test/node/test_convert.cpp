@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "frames.h"
+#include "node/convert.h"
+
+namespace dmf::node {
+namespace {
+
+class ConvertTest : public ::testing::Test {
+ protected:
+  chip::Scene scene_ = testing::tiny_scene_in_round_units();  // 20 um, 3e-13 kg, 4 us: 5 m/s
+  ConversionContext context_{scene_, 1000, 0.02};
+  std::shared_ptr<Frame> frame_ = testing::example_frame(scene_);
+};
+
+TEST_F(ConvertTest, StateHoldsSiAndReducedTime) {
+  const auto state = to_state(*frame_, context_);
+  EXPECT_EQ(state.header.stamp, ros::Time(2, 500000000));
+  EXPECT_EQ(state.header.frame_id, "chip");
+  EXPECT_EQ(state.scene, "tiny_line");
+  EXPECT_EQ(state.seed, 42u);
+  EXPECT_EQ(state.run, 3u);
+  EXPECT_EQ(state.step, 1200u);
+  EXPECT_DOUBLE_EQ(state.time_mdpd, 12);
+  EXPECT_DOUBLE_EQ(state.time, 12 * 4e-6);
+  EXPECT_DOUBLE_EQ(state.temperature_mdpd, 1.01);
+  EXPECT_DOUBLE_EQ(state.target_temperature_mdpd, 1);
+  EXPECT_DOUBLE_EQ(state.hv_voltage, 63);
+  EXPECT_TRUE(state.hv_enabled);
+  EXPECT_EQ(state.droplets, 2u);
+  EXPECT_EQ(state.vapour_beads, 1u);
+  EXPECT_EQ(state.limited_by, "engine");
+  EXPECT_EQ(state.state_hash, "") << "nobody asked for it";
+}
+
+TEST_F(ConvertTest, HashIsSixteenHexDigits) {
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->state_hash = 0xab;
+  frame_->snapshot = snapshot;
+  EXPECT_EQ(to_state(*frame_, context_).state_hash, "00000000000000ab");
+}
+
+TEST_F(ConvertTest, DropletIsInSiUnits) {
+  const auto droplets = to_droplets(*frame_, context_).droplets;
+  ASSERT_EQ(droplets.size(), 2u);
+  const auto& droplet = droplets[0];
+  EXPECT_EQ(droplet.id, 5u);
+  EXPECT_EQ(droplet.parents, (std::vector<std::uint32_t>{2, 3}));
+  EXPECT_DOUBLE_EQ(droplet.centroid.z, 3 * 2e-5);
+  EXPECT_DOUBLE_EQ(droplet.centroid_mdpd.z, 3);
+  EXPECT_DOUBLE_EQ(droplet.velocity.x, 0.5 * 5);
+  EXPECT_DOUBLE_EQ(droplet.velocity_mdpd.x, 0.5);
+  EXPECT_DOUBLE_EQ(droplet.volume, 10 * 8e-15);
+  EXPECT_DOUBLE_EQ(droplet.footprint_area, 7 * 4e-10);
+  EXPECT_DOUBLE_EQ(droplet.height, 4 * 2e-5);
+  ASSERT_EQ(droplet.footprint.size(), 3u);
+  EXPECT_DOUBLE_EQ(droplet.footprint[1].x, 2e-5);
+  EXPECT_DOUBLE_EQ(droplet.footprint[1].z, scene_.parameters.domain.lower.z() * 2e-5) << "lies on the plate";
+  EXPECT_EQ(droplet.channels, (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST_F(ConvertTest, AnglesThatWereNotMeasuredAreNan) {
+  const auto droplets = to_droplets(*frame_, context_).droplets;
+  EXPECT_DOUBLE_EQ(droplets[0].advancing_angle_deg, 100);
+  EXPECT_TRUE(std::isnan(droplets[0].receding_angle_deg));
+  EXPECT_TRUE(std::isnan(droplets[0].contact_angle_deg));
+}
+
+TEST_F(ConvertTest, ElectrodesAreInTheOrderOfTheLayout) {
+  const auto message = to_electrodes(*frame_);
+  ASSERT_EQ(message.electrodes.size(), 4u);
+  for (std::uint32_t channel = 0; channel < 4; ++channel) {
+    EXPECT_EQ(message.electrodes[channel].channel, channel);
+    EXPECT_EQ(message.electrodes[channel].on != 0, channel == 1);
+  }
+  EXPECT_DOUBLE_EQ(message.electrodes[1].voltage, 63);
+  EXPECT_DOUBLE_EQ(message.electrodes[1].contact_angle_deg, 50);
+}
+
+TEST_F(ConvertTest, LayoutIsTrueToSize) {
+  const auto layout = to_layout(context_);
+  ASSERT_EQ(layout.electrodes.size(), 4u);
+  EXPECT_NEAR(layout.electrodes[0].centroid.x, -9 * 2e-5, 1e-12);
+  EXPECT_NEAR(layout.electrodes[3].centroid.x, 9 * 2e-5, 1e-12);
+  EXPECT_EQ(layout.electrodes[1].neighbours, (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_DOUBLE_EQ(layout.gap, 1 * 2e-5);
+  EXPECT_DOUBLE_EQ(layout.lower.x, -14 * 2e-5);
+  EXPECT_DOUBLE_EQ(layout.time_unit, 4e-6);
+  EXPECT_DOUBLE_EQ(layout.max_voltage, 80);
+}
+
+TEST_F(ConvertTest, CommandCanBeReadBackFromItsJson) {
+  CommandNote note;
+  note.index = 2;
+  note.time = 5;
+  note.record = {500, chip::SetHv{63.123456789012345, 1000, true}};
+  const auto message = to_command(note, context_);
+  EXPECT_EQ(message.name, "set_hv");
+  EXPECT_EQ(message.step, 500u);
+  EXPECT_DOUBLE_EQ(message.time, 5 * 4e-6);
+  const auto command = std::get<chip::SetHv>(chip::command_from_json(message.json));
+  EXPECT_EQ(command.voltage, 63.123456789012345);
+  EXPECT_TRUE(command.enabled);
+}
+
+TEST_F(ConvertTest, ParticlesAreScaledForTheScreen) {
+  const auto cloud = to_particles(*frame_, context_);
+  ASSERT_EQ(cloud.width, 4u);
+  ASSERT_EQ(cloud.fields.size(), 6u);
+  ASSERT_EQ(cloud.data.size(), cloud.row_step);
+  const auto number = [&](std::size_t bead, std::size_t field) {
+    float value;
+    std::memcpy(&value, &cloud.data[bead * cloud.point_step + cloud.fields[field].offset], sizeof value);
+    return value;
+  };
+  const auto integer = [&](std::size_t bead, std::size_t field) {
+    std::uint32_t value;
+    std::memcpy(&value, &cloud.data[bead * cloud.point_step + cloud.fields[field].offset], sizeof value);
+    return value;
+  };
+  EXPECT_EQ(cloud.fields[2].name, "z");
+  EXPECT_FLOAT_EQ(number(0, 2), 3 * 2e-5f * 1000);
+  EXPECT_FLOAT_EQ(number(2, 0), -4 * 2e-5f * 1000);
+  EXPECT_EQ(cloud.fields[3].name, "id");
+  EXPECT_EQ(integer(1, 3), 11u);
+  EXPECT_EQ(cloud.fields[4].name, "droplet");
+  EXPECT_EQ(integer(3, 4), 0u);
+  EXPECT_EQ(cloud.fields[5].name, "speed");
+  EXPECT_FLOAT_EQ(number(0, 5), 5 * 5.0f) << "true speed, not scaled: |(3, 4, 0)| r_c/tau";
+}
+
+TEST_F(ConvertTest, TransformsAreScaledForTheScreen) {
+  const auto droplets = droplet_transforms(*frame_, context_);
+  ASSERT_EQ(droplets.size(), 2u);
+  EXPECT_EQ(droplets[0].child_frame_id, "chip/droplet_5");
+  EXPECT_DOUBLE_EQ(droplets[0].transform.translation.y, 2 * 2e-5 * 1000);
+  EXPECT_DOUBLE_EQ(droplets[0].transform.rotation.w, 1);
+  const auto electrodes = electrode_transforms(context_, ros::Time(1));
+  ASSERT_EQ(electrodes.size(), 4u);
+  EXPECT_EQ(electrodes[3].child_frame_id, "chip/electrode_3");
+  EXPECT_NEAR(electrodes[3].transform.translation.x, 9 * 2e-5 * 1000, 1e-9);
+}
+
+TEST_F(ConvertTest, DiagnosticsTellSoundWarmAndHalted) {
+  using diagnostic_msgs::DiagnosticStatus;
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->moving_beads = 10000;
+  frame_->snapshot = snapshot;
+  EXPECT_EQ(to_diagnostics(*frame_, context_).status.at(0).level, DiagnosticStatus::OK);
+  snapshot->temperature = 1.2;
+  EXPECT_EQ(to_diagnostics(*frame_, context_).status.at(0).level, DiagnosticStatus::WARN);
+  snapshot->moving_beads = 20;  // a handful of beads fluctuates more than that
+  EXPECT_EQ(to_diagnostics(*frame_, context_).status.at(0).level, DiagnosticStatus::OK);
+  frame_->fault = "bead 3 ran away";
+  const auto halted = to_diagnostics(*frame_, context_).status.at(0);
+  EXPECT_EQ(halted.level, DiagnosticStatus::ERROR);
+  EXPECT_NE(halted.message.find("bead 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dmf::node

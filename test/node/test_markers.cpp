@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "frames.h"
+#include "node/markers.h"
+#include "node/triangulate.h"
+
+namespace dmf::node {
+namespace {
+
+using visualization_msgs::Marker;
+
+std::map<std::pair<std::string, int>, Marker> by_id(const visualization_msgs::MarkerArray& array) {
+  std::map<std::pair<std::string, int>, Marker> result;
+  for (const Marker& marker : array.markers) {
+    EXPECT_TRUE(result.emplace(std::make_pair(marker.ns, marker.id), marker).second)
+        << marker.ns << " " << marker.id << " twice";
+    EXPECT_EQ(marker.header.frame_id, "chip");
+    EXPECT_EQ(marker.pose.orientation.w, 1);
+  }
+  return result;
+}
+
+double area(const std::vector<Eigen::Vector2d>& triangles) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+    const Eigen::Vector2d u = triangles[i + 1] - triangles[i], v = triangles[i + 2] - triangles[i];
+    const double twice = u.x() * v.y() - u.y() * v.x();
+    EXPECT_GE(twice, 0) << "wound the wrong way round, RViz would draw it black";
+    sum += twice / 2;
+  }
+  return sum;
+}
+
+class MarkersTest : public ::testing::Test {
+ protected:
+  chip::Scene scene_ = testing::tiny_scene_in_round_units();
+  ConversionContext context_{scene_, 1000, 0.02};
+  std::shared_ptr<Frame> frame_ = testing::example_frame(scene_);
+};
+
+TEST_F(MarkersTest, EachElectrodeHasItsNumberAndAColourOfItsVoltage) {
+  const auto markers = by_id(chip_markers(*frame_, context_));
+  ASSERT_EQ(markers.size(), 1u + 2 * 4);
+  EXPECT_EQ(markers.at({"plate", 0}).type, Marker::CUBE);
+  for (int channel = 0; channel < 4; ++channel) {
+    const Marker& label = markers.at({"electrode_labels", channel});
+    EXPECT_EQ(label.type, Marker::TEXT_VIEW_FACING);
+    EXPECT_EQ(label.text, std::to_string(channel));
+    EXPECT_EQ(markers.at({"electrodes", channel}).type, Marker::TRIANGLE_LIST);
+  }
+  EXPECT_EQ(markers.at({"electrodes", 0}).color, markers.at({"electrodes", 2}).color);
+  EXPECT_NE(markers.at({"electrodes", 0}).color, markers.at({"electrodes", 1}).color) << "63 V";
+}
+
+TEST_F(MarkersTest, PadsLieOnThePlateAtDisplayScale) {
+  const Marker pad = by_id(chip_markers(*frame_, context_)).at({"electrodes", 3});
+  ASSERT_EQ(pad.points.size(), 6u) << "a square is two triangles";
+  std::vector<Eigen::Vector2d> corners;
+  for (const auto& point : pad.points) {
+    corners.emplace_back(point.x, point.y);
+    EXPECT_NEAR(point.z, 0, 0.1 * 0.02);
+  }
+  EXPECT_NEAR(area(corners), 25 * 0.02 * 0.02, 1e-9) << "5 r_c wide, 20 mm on the screen per r_c";
+}
+
+TEST_F(MarkersTest, BeadsAreDrawnWithTheirDroplet) {
+  const auto markers = by_id(droplet_markers(*frame_, context_));
+  EXPECT_EQ(markers.at({"droplets", 5}).type, Marker::SPHERE_LIST);
+  EXPECT_EQ(markers.at({"droplets", 5}).points.size(), 2u);
+  EXPECT_EQ(markers.at({"droplets", 7}).points.size(), 1u);
+  EXPECT_NEAR(markers.at({"droplets", 7}).points[0].x, -4 * 0.02, 1e-9);
+  EXPECT_EQ(markers.at({"vapour", 0}).points.size(), 1u);
+  EXPECT_NE(markers.at({"droplets", 5}).color, markers.at({"droplets", 7}).color);
+  EXPECT_NE(markers.at({"droplet_labels", 5}).text.find("droplet 5"), std::string::npos);
+  EXPECT_NE(markers.at({"droplet_labels", 5}).text.find("100"), std::string::npos) << "the advancing angle";
+}
+
+TEST_F(MarkersTest, VapourThatCondensedLeavesTheScreen) {
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->bead_droplets.back() = 7;
+  frame_->snapshot = snapshot;
+  EXPECT_EQ(by_id(droplet_markers(*frame_, context_)).at({"vapour", 0}).action, Marker::DELETE);
+}
+
+TEST_F(MarkersTest, BeadsOfADropletOfThePastAreVapour) {
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->bead_droplets = {5, 5, 6, 0};
+  frame_->snapshot = snapshot;
+  EXPECT_EQ(by_id(droplet_markers(*frame_, context_)).at({"vapour", 0}).points.size(), 2u);
+}
+
+TEST_F(MarkersTest, DropletsThatAreGoneAreDeletedWithTheirLabels) {
+  const auto markers = by_id(deletions({4, 9}, ros::Time(3)));
+  ASSERT_EQ(markers.size(), 4u);
+  for (const auto& [key, marker] : markers) EXPECT_EQ(marker.action, Marker::DELETE);
+  EXPECT_EQ(markers.count({"droplet_labels", 9}), 1u);
+}
+
+TEST(Triangulate, CoversAPolygonWithNotches) {
+  // A comb: two teeth, area 4*1 + 2 * (1*2) = 8.
+  const std::vector<Eigen::Vector2d> comb{{0, 0}, {4, 0}, {4, 3}, {3, 3}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+  EXPECT_EQ(triangulate(comb).size(), 3 * (comb.size() - 2));
+  EXPECT_NEAR(area(triangulate(comb)), 8, 1e-12);
+}
+
+TEST(Triangulate, EndsOnCornersThatLieOnALine) {
+  const std::vector<Eigen::Vector2d> square{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  EXPECT_NEAR(area(triangulate(square)), 4, 1e-12);
+}
+
+}  // namespace
+}  // namespace dmf::node
