@@ -20,7 +20,7 @@ packages=(
   # ROS: test
   libgtest-dev librostest-dev python3-rostest
   # the engine and the chip
-  libeigen3-dev libhwy-dev libyaml-cpp-dev libfmt-dev libcli11-dev nlohmann-json3-dev
+  libeigen3-dev libhwy-dev libyaml-cpp-dev libfmt-dev libcli11-dev nlohmann-json3-dev libboost-dev
   # pictures
   python3-numpy python3-matplotlib
 )

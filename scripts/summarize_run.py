@@ -255,8 +255,9 @@ def draw(run, track, path):
     if frames:
         corners = [corner for electrode in run.layout.electrodes for corner in electrode.outline]
         radius = max(d.upper.z - d.lower.z for d in track.observations)
-        xs = [min(min(c.x for c in corners), track.x.min() - radius) * 1e3,
-              max(max(c.x for c in corners), track.x.max() + radius) * 1e3]
+        margin = 0.2 * radius
+        xs = [min(min(c.x for c in corners) - margin, track.x.min() - radius) * 1e3,
+              max(max(c.x for c in corners) + margin, track.x.max() + radius) * 1e3]
         ys = [(track.y.min() - radius) * 1e3, (track.y.max() + radius) * 1e3]
         top = max(d.upper.z for d in track.observations)
         right = columns[1].subgridspec(len(frames) + 1, 1)

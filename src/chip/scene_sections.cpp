@@ -136,6 +136,7 @@ LiquidParameters read_liquid(const YamlReader& root) {
   liquid.initial_density = section->number("initial_density", {}, liquid.initial_density);
   liquid.bulk_density = section->number("bulk_density", {}, liquid.bulk_density);
   liquid.surface_tension = section->number("surface_tension", {}, liquid.surface_tension);
+  liquid.viscosity = section->number("viscosity", {}, liquid.viscosity);
   return liquid;
 }
 

@@ -33,9 +33,9 @@ struct LiquidParameters {
   // What the numbers above lead to, measured (`dmf_study liquid`). They enter no force: volumes and
   // half-density surfaces are reported with the density, SI units derived with density and tension, and
   // dmf_run --explain uses all three.
-  double bulk_density = 6.05;    ///< of the liquid at rest, beads per r_c^3; [1, 20]
-  double surface_tension = 7.5;  ///< k_BT / r_c^2; (0, 1000]
-  double viscosity = 9.0;        ///< dynamic, m / (r_c tau); (0, 1000]
+  double bulk_density = 6.06;     ///< of the liquid at rest, beads per r_c^3; [1, 20]
+  double surface_tension = 7.54;  ///< k_BT / r_c^2; (0, 1000]
+  double viscosity = 8.2;         ///< dynamic, m / (r_c tau); (0, 1000]
 };
 
 struct WallParameters {
@@ -74,7 +74,7 @@ struct Parameters {
   double list_skin = 0.2;  ///< extra range of the neighbour list, r_c; [0.05, 1]
   std::uint64_t seed = 1;  ///< of all randomness
   std::uint32_t observe_interval = 20;  ///< steps between two looks of the droplet tracker; [1, 100000]
-  double angle_window = 10.0;           ///< memory of the running contact angle measurement, tau; [0, 1e4]
+  double angle_window = 20.0;           ///< memory of the running contact angle measurement, tau; [0, 1e4]
   std::uint64_t max_beads = 4'000'000;  ///< moving beads a run may hold; [1, 100e6]
 };
 

@@ -35,7 +35,7 @@ std_msgs::ColorRGBA color(double r, double g, double b, double a = 1) {
 /// Grey without voltage to orange at the board's limit.
 std_msgs::ColorRGBA voltage_color(double voltage, double max_voltage) {
   const double f = std::clamp(std::abs(voltage) / max_voltage, 0.0, 1.0);
-  return color(0.35 + 0.65 * f, 0.35 + 0.20 * f, 0.38 - 0.33 * f);
+  return color(0.5 + 0.5 * f, 0.5 + 0.05 * f, 0.52 - 0.47 * f);
 }
 
 /// Neighbouring ids differ most: hues a golden section apart.

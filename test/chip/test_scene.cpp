@@ -66,8 +66,8 @@ TEST(ShippedScenes, ArrayLooksAsItsCommentDraws) {
 TEST(Scene, UnitsAreWatersByDefaultAndLansOnDemand) {
   const engine::Units water = parse("").units;
   EXPECT_DOUBLE_EQ(water.length_m, 1e-5);
-  EXPECT_NEAR(water.surface_tension_N_per_m() * 7.5, 0.072, 1e-12);
-  EXPECT_NEAR(6.05 * water.mass_kg / 1e-15, 1000, 1e-9);
+  EXPECT_NEAR(water.surface_tension_N_per_m() * engine::LiquidParameters{}.surface_tension, 0.072, 1e-12);
+  EXPECT_NEAR(engine::LiquidParameters{}.bulk_density * water.mass_kg / 1e-15, 1000, 1e-9);
   EXPECT_DOUBLE_EQ(parse("units: {preset: lan2016}\n").units.time_s, 8.5e-6);
   EXPECT_TRUE(holds(refused("units: {length: 10}\n"), "units.length: 10, allowed: a number with a unit"));
   EXPECT_TRUE(
@@ -168,7 +168,8 @@ TEST(Scene, ElectrodesAndDropletsStayOnThePlate) {
 TEST(Scene, AnglesStayWithinTheCalibration) {
   EXPECT_TRUE(holds(refusal([] {
                       parse_scene(
-                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\nwettability: {calibration: lan2016, rest_angle: 160}\n",
+                          "domain: {lower: [0, 0, 0], upper: [20, 20, 20]}\nwettability: {calibration: "
+                          "lan2016, rest_angle: 160}\n",
                           "scene.yaml");
                     }),
                     "scene.yaml:2: wettability.rest_angle: 160 degrees, allowed: 40 to 150 degrees"));

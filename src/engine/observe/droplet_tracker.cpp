@@ -207,12 +207,12 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
 
 void DropletTracker::measure_angles(DropletObservation& droplet, const Component& component, double elapsed) {
   RunningAngles& angles = memory_.at(component.id).angles;
-  // A droplet of N beads jitters with sqrt(k_BT / N); what is slower than half of that is rest, and keeps its
+  // A droplet of N beads jitters with sqrt(k_BT / N); what is hardly faster than that is rest, and keeps its
   // way.
   const double jitter =
       std::sqrt(parameters_.liquid.temperature / static_cast<double>(component.beads.size()));
   const Eigen::Vector2d horizontal = droplet.velocity.head<2>();
-  if (horizontal.norm() > 0.5 * jitter && angles.way().dot(horizontal.normalized()) < same_way_cosine)
+  if (horizontal.norm() > 1.5 * jitter && angles.way().dot(horizontal.normalized()) < same_way_cosine)
     angles.turn(horizontal.normalized());
   angles.begin_sample(elapsed, parameters_.angle_window);
   const Vector3d foot(droplet.centroid.x(), droplet.centroid.y(), wall_plane_);
