@@ -6,9 +6,9 @@
 
 namespace dmf::engine {
 
-void prefer_sleeping_threads(char** arguments) {
+void prefer_short_spinning(char** arguments) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  setenv("OMP_WAIT_POLICY", "passive", 1);
+  setenv("GOMP_SPINCOUNT", "1000", 1);
   // When the program can't be started again it runs on as it is: slower on a busy machine, but right.
   execv("/proc/self/exe", arguments);
 }

@@ -2,12 +2,12 @@
 
 namespace dmf::engine {
 
-/// Makes OpenMP threads sleep instead of spin while they wait for each other, unless OMP_WAIT_POLICY or
-/// GOMP_SPINCOUNT is set. On a machine that is busy with something else a spinning thread takes the time that
-/// the thread it waits for needs: a step of a small droplet on two threads took four times as long. OpenMP
-/// reads the setting when the program is loaded, so this starts the program again; call it first thing in
-/// main().
+/// Lets OpenMP threads spin only for some microseconds before they sleep while they wait for each other,
+/// unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set. Spinning without end is fastest on a machine of one's
+/// own, but on a busy one a spinning thread takes the time that the thread it waits for needs, and a step
+/// takes ten times as long; docs/performance.md has the figures. OpenMP reads the setting when the program is
+/// loaded, so this starts the program again; call it first thing in main().
 /// @param arguments  argv.
-void prefer_sleeping_threads(char** arguments);
+void prefer_short_spinning(char** arguments);
 
 }  // namespace dmf::engine

@@ -10,7 +10,7 @@
 #include "node/options.h"
 
 int main(int argc, char** argv) {
-  dmf::engine::prefer_sleeping_threads(argv);
+  dmf::engine::prefer_short_spinning(argv);
   ros::init(argc, argv, "chip");
   try {
     const dmf::node::Options options = dmf::node::load_options(ros::NodeHandle("~"));

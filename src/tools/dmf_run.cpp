@@ -12,7 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace dmf;
-  engine::prefer_sleeping_threads(argv);
+  engine::prefer_short_spinning(argv);
   CLI::App app("Runs a scene of dmf_sim without ROS, by the scene's own schedule.");
   tools::RunOptions options;
   bool explain_only = false, hash = false;
