@@ -1,4 +1,9 @@
 # Messages, services and what a ROS workspace needs to know about this package.
+
+# catkin keeps the environment of its first configuration for the tests, and leaves folders out of it that do not exist
+# yet. Without this one the first build's tests can't import the messages.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/devel/lib/python3/dist-packages)
+
 # genmsg leaves libraries nothing to link: targets that include a generated header depend on
 # ${dmf_sim_EXPORTED_TARGETS} and on ${catkin_EXPORTED_TARGETS}.
 find_package(catkin REQUIRED COMPONENTS
