@@ -15,7 +15,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
     : kernels_(kernel == "reference" ? reference_kernels() : select_kernels(kernel)),
       kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
       constants_{} {
-  constants_.law = liquid_law(parameters.liquid, parameters.time_step);
+  constants_.laws = pair_table(parameters);
   constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
   for (int axis = 0; axis < 3; ++axis) {
     if (!parameters.domain.periodic(axis)) continue;

@@ -63,9 +63,10 @@ template <bool across_periodic>
 HWY_INLINE void density_of_bead(const PairPass& pass, std::uint32_t bead, NeighbourBlock& block,
                                 NeighbourRow& row) {
   const Record& i = pass.position[bead];
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   const Lanes squared_cutoff(
-      static_cast<float>(1.0 / (pass.law.inverse_cutoff_radius * pass.law.inverse_cutoff_radius)));
-  const Lanes inverse_repulsion_radius(static_cast<float>(pass.law.inverse_repulsion_radius));
+      static_cast<float>(1.0 / (law.inverse_cutoff_radius * law.inverse_cutoff_radius)));
+  const Lanes inverse_repulsion_radius(static_cast<float>(law.inverse_repulsion_radius));
   const std::uint32_t* neighbours = block.liquid.data() + row.liquid_begin;
   std::uint32_t* hits = block.in_range.data() + row.liquid_begin;
   std::size_t hit_count = 0;
@@ -155,16 +156,17 @@ HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std:
 }
 
 void force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<Lanes> law = in_lanes(pass.law);
+  const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
+  const MdpdLaw<Lanes> wall_law = in_lanes(pass.laws(Species::liquid, Species::wall));
   for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
     const NeighbourRow& row = block.rows[bead - block.begin];
     ForceSum total{Lanes(0), Lanes(0), Lanes(0)};
     if (row.across_periodic) {
       liquid_force<true>(pass, law, bead, block, row, total);
-      wall_force<true>(pass, law, bead, block, row, total);
+      wall_force<true>(pass, wall_law, bead, block, row, total);
     } else {
       liquid_force<false>(pass, law, bead, block, row, total);
-      if (row.wall_count > 0) wall_force<false>(pass, law, bead, block, row, total);
+      if (row.wall_count > 0) wall_force<false>(pass, wall_law, bead, block, row, total);
     }
     pass.force[bead] = {sum(total.x), sum(total.y), sum(total.z), 0.f};
   }

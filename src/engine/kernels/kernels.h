@@ -5,7 +5,7 @@
 
 #include "engine/beads.h"
 #include "engine/cell_grid.h"
-#include "engine/pair_law.h"
+#include "engine/species.h"
 
 namespace dmf::engine {
 
@@ -34,7 +34,7 @@ struct PairPass {
   Record* predicted;             ///< velocities; density pass writes w = rho
   Record* force;                 ///< force pass writes
   const Record* wall = nullptr;  ///< x, y, z, A_lw
-  MdpdLaw<double> law;
+  PairTable laws;
   double density_normalization = 0;
   Eigen::Vector3f period = Eigen::Vector3f::Zero();  ///< 0 along axes that are not periodic
   Eigen::Vector3f inverse_period = Eigen::Vector3f::Zero();

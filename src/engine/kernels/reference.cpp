@@ -69,7 +69,8 @@ void list(const ListPass& pass, NeighbourBlock& block) {
 }
 
 void density(const PairPass& pass, NeighbourBlock& block) {
-  const double cutoff = 1.0 / pass.law.inverse_cutoff_radius;
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
+  const double cutoff = 1.0 / law.inverse_cutoff_radius;
   for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
     NeighbourRow& row = block.rows[bead - block.begin];
     double total = 0;
@@ -78,7 +79,7 @@ void density(const PairPass& pass, NeighbourBlock& block) {
       const std::uint32_t offset = block.liquid[row.liquid_begin + k];
       const double r = separation(pass, pass.position[bead], pass.position[index_of(offset)]).norm();
       if (r >= cutoff) continue;
-      total += density_weight(r, pass.law.inverse_repulsion_radius);
+      total += density_weight(r, law.inverse_repulsion_radius);
       block.in_range[row.liquid_begin + row.hits++] = offset;
     }
     pass.predicted[bead].w = static_cast<float>(pass.density_normalization * total);
@@ -86,7 +87,9 @@ void density(const PairPass& pass, NeighbourBlock& block) {
 }
 
 void force(const PairPass& pass, const NeighbourBlock& block) {
-  const double cutoff = 1.0 / pass.law.inverse_cutoff_radius;
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
+  const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
+  const double cutoff = 1.0 / wall_law.inverse_cutoff_radius;
   for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
     const NeighbourRow& row = block.rows[bead - block.begin];
     const Record& i = pass.position[bead];
@@ -100,7 +103,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       const double approach = d.dot(velocity_of(moving) - velocity_of(pass.predicted[other])) / r;
       const double zeta = pair_noise<double>(key_bits(i.w), key_bits(j.w));
       const double density_sum = double(moving.w) + pass.predicted[other].w;
-      total += mdpd_force(pass.law, pass.law.attraction, r, density_sum, approach, zeta) / r * d;
+      total += mdpd_force(law, law.attraction, r, density_sum, approach, zeta) / r * d;
     }
     for (std::uint32_t k = 0; k < row.wall_count; ++k) {
       const std::size_t other = index_of(block.wall[row.wall_begin + k]);
@@ -110,7 +113,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       const double r = std::max(d.norm(), 1e-6);
       const double approach = d.dot(velocity_of(moving)) / r;
       const double zeta = pair_noise<double>(key_bits(i.w), wall_key(static_cast<std::uint32_t>(other)));
-      total += mdpd_force(pass.law, double(j.w), r, double(moving.w), approach, zeta) / r * d;
+      total += mdpd_force(wall_law, double(j.w), r, double(moving.w), approach, zeta) / r * d;
     }
     pass.force[bead] = {static_cast<float>(total.x()), static_cast<float>(total.y()),
                         static_cast<float>(total.z()), 0};
