@@ -17,7 +17,7 @@ constexpr double thermal_energy = 4.047e-21;
 constexpr double typical_speed = 0.05;
 /// Memory of a moving bead with its neighbour lists and of a wall bead, bytes: measured, see
 /// docs/performance.md.
-constexpr double bytes_per_moving_bead = 550, bytes_per_wall_bead = 30;
+constexpr double bytes_per_moving_bead = 720, bytes_per_wall_bead = 30;
 
 std::string line(const char* name, double ours, double water) {
   return fmt::format("  {:<46} {:>11.3g} {:>11.3g} {:>10.3g}\n", name, ours, water, ours / water);
