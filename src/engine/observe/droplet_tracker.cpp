@@ -181,10 +181,9 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
         row_of(blocks, component.beads[k]).hits >= fewest_rim_neighbours)
       wetting.push_back(position.head<2>());
   }
-  // Mean over the window; the first look has nothing to average with.
-  const double weight = droplets_.empty() && elapsed <= 0 ? 1.0
-                        : parameters_.angle_window > 0 ? 1.0 - std::exp(-elapsed / parameters_.angle_window)
-                                                       : 1.0;
+  // Mean over the window. A droplet starts at rest.
+  const double weight =
+      parameters_.angle_window > 0 ? 1.0 - std::exp(-elapsed / parameters_.angle_window) : 1.0;
   memory.velocity += weight * (velocity - memory.velocity);
   droplet.velocity = memory.velocity;
   droplet.height = droplet.upper.z() - wall_plane_;
