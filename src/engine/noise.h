@@ -12,6 +12,7 @@ namespace dmf::engine {
 /// | wall       | zeta_ij of the random force, liquid-wall    | bead id, wall bead index            |
 /// | velocity   | thermal velocities of a newly placed bead   | bead id, component                  |
 ///
+/// A wall pair mixes the liquid bead's key of the pair stream with a fixed key of the wall bead.
 /// The pair stream costs one hash a bead and step (`bead_key`) plus one hash a pair (`mix` in noise-inl.h).
 enum class Stream : std::uint32_t { pair = 1, velocity = 2 };
 

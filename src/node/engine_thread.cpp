@@ -90,8 +90,7 @@ auto EngineThread::ask(Request request) -> decltype(request()) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- the thread
-// itself
+// ---- the thread itself ----
 
 void EngineThread::loop() {
   next_step_ = next_frame_ = next_display_ = Clock::now();
@@ -292,8 +291,7 @@ double EngineThread::time_of(std::uint64_t step) const {
 
 std::uint64_t EngineThread::seed() const { return experiment_->simulation().parameters().seed; }
 
-// ------------------------------------------------------------------------------------------------------
-// requests
+// ---- - requests ----
 
 chip::Reply EngineThread::apply(const chip::Command& command) {
   return ask([this, &command] {

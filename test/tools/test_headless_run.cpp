@@ -25,23 +25,23 @@ std::string fresh_folder(const std::string& name) {
   return folder;
 }
 
+/// A folder with checkpoints of a run of so many steps, one every 50.
+std::string checkpoints_of(std::uint64_t steps, const std::string& name) {
+  RunOptions options = tiny(steps);
+  options.output = fresh_folder(name);
+  options.checkpoint_every = 50;
+  headless_run(options);
+  return options.output;
+}
+
 TEST(HeadlessRun, ResumedEndsWithTheHashOfAnUninterruptedRun) {
-  const std::string folder = fresh_folder("resume");
-  RunOptions first = tiny(130);
-  first.output = folder;
-  first.checkpoint_every = 50;
-  headless_run(first);
   RunOptions second = tiny(300, 2);
-  second.resume = folder;
+  second.resume = checkpoints_of(130, "resume");
   EXPECT_EQ(headless_run(second).hash, headless_run(tiny(300)).hash);
 }
 
 TEST(HeadlessRun, ResumePassesOverADamagedCheckpoint) {
-  const std::string folder = fresh_folder("damaged");
-  RunOptions first = tiny(100);
-  first.output = folder;
-  first.checkpoint_every = 50;
-  headless_run(first);
+  const std::string folder = checkpoints_of(100, "damaged");
   std::filesystem::resize_file(folder + "/step_000000000100.checkpoint", 1000);
   RunOptions second = tiny(200);
   second.resume = folder;

@@ -56,8 +56,7 @@ HWY_INLINE Separation separation(const PairPass& pass, const Record& i, Lanes x,
 /// Coincident beads feel no force from each other instead of an infinite one.
 constexpr float smallest_squared_distance = 1e-12f;
 
-// --- density
-// -------------------------------------------------------------------------------------------------------
+// ---- density ----
 
 template <bool across_periodic>
 HWY_INLINE void density_of_bead(const PairPass& pass, std::uint32_t bead, NeighbourBlock& block,
@@ -96,8 +95,7 @@ void density(const PairPass& pass, NeighbourBlock& block) {
   }
 }
 
-// --- force
-// ---------------------------------------------------------------------------------------------------------
+// ---- force ----
 
 struct ForceSum {
   Lanes x, y, z;
@@ -172,8 +170,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
   }
 }
 
-// --- list
-// ----------------------------------------------------------------------------------------------------------
+// ---- list ----
 
 /// Appends the offsets of all candidates within `range` of (x, y, z), but not `self`. `to` has room for all
 /// of them.
