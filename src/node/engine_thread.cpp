@@ -291,7 +291,7 @@ double EngineThread::time_of(std::uint64_t step) const {
 
 std::uint64_t EngineThread::seed() const { return experiment_->simulation().parameters().seed; }
 
-// ---- - requests ----
+// ---- requests ----
 
 chip::Reply EngineThread::apply(const chip::Command& command) {
   return ask([this, &command] {
