@@ -1,36 +1,39 @@
 #!/bin/bash
 # Installs the Debian packages that building, running and testing need, when any is missing.
-# usage: scripts/install_dependencies.sh [--rviz]
+# usage: scripts/install_dependencies.sh [--rviz | --bench]
+#   --rviz    RViz too
+#   --bench   what scripts/bench.sh needs and no more: nothing of ROS
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 packages=(
   g++ cmake make ca-certificates
-  # ROS: build
-  catkin ros-message-generation libroscpp-dev libtf2-ros-dev
-  libstd-msgs-dev libstd-srvs-dev libgeometry-msgs-dev libsensor-msgs-dev libvisualization-msgs-dev
-  libdiagnostic-msgs-dev libros-rosgraph-msgs-dev
-  ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-visualization-msgs ros-diagnostic-msgs
-  ros-actionlib-msgs ros-rosgraph-msgs
-  # ROS: run
-  rosbash rosout python3-roslaunch python3-rostopic python3-rosservice python3-rosnode python3-rosparam
-  python3-rosmsg python3-rosbag python3-rospy
-  python3-std-msgs python3-std-srvs python3-geometry-msgs python3-sensor-msgs python3-visualization-msgs
-  python3-diagnostic-msgs python3-rosgraph-msgs python3-tf2-msgs
-  # ROS: test
-  libgtest-dev librostest-dev python3-rostest
   # the engine and the chip
   libeigen3-dev libhwy-dev libyaml-cpp-dev libfmt-dev libcli11-dev nlohmann-json3-dev libboost-dev
   # pictures
   python3-numpy python3-matplotlib
 )
-while [ $# -gt 0 ]; do
-  case "$1" in
-    --rviz) packages+=(rviz) ;;
-    *) die "unknown option $1, allowed: --rviz" ;;
-  esac
-  shift
-done
+ros=(
+  # build
+  catkin ros-message-generation libroscpp-dev libtf2-ros-dev
+  libstd-msgs-dev libstd-srvs-dev libgeometry-msgs-dev libsensor-msgs-dev libvisualization-msgs-dev
+  libdiagnostic-msgs-dev libros-rosgraph-msgs-dev
+  ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-visualization-msgs ros-diagnostic-msgs
+  ros-actionlib-msgs ros-rosgraph-msgs
+  # run
+  rosbash rosout python3-roslaunch python3-rostopic python3-rosservice python3-rosnode python3-rosparam
+  python3-rosmsg python3-rosbag python3-rospy
+  python3-std-msgs python3-std-srvs python3-geometry-msgs python3-sensor-msgs python3-visualization-msgs
+  python3-diagnostic-msgs python3-rosgraph-msgs python3-tf2-msgs
+  # test
+  libgtest-dev librostest-dev python3-rostest
+)
+case "$*" in
+  "") packages+=("${ros[@]}") ;;
+  --rviz) packages+=("${ros[@]}" rviz) ;;
+  --bench) packages+=(libbenchmark-dev) ;;
+  *) die "unknown options $*, allowed: --rviz or --bench" ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
