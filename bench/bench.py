@@ -31,8 +31,8 @@ LAMMPS_INPUTS = {
     "W4_bulk_1M": ("bulk.in", {"cells": 63, "side": 54.855, "melt": 10, "steps": 10}),
 }
 LAMMPS_NOTE = ("LAMMPS {}, one process. Speed only: stock mdpd/rhosum weighs densities with Lucy's kernel in place of "
-               "Warren's, so its liquid has density 6.71 and surface tension 9.5, and its forces have no potential. Of W2 "
-               "and W3 it spends most on listing the neighbours of frozen wall beads")
+               "Warren's, so its liquid has density 6.71 and surface tension 9.5, and its forces have no potential. Most of "
+               "its time in W3 goes into neighbour lists of frozen wall beads")
 W3_NOTE = "W3 is the droplet alone: the 612 beads of a microparticle's shell join when the engine has microparticles"
 
 LARGEST = "W4_bulk_1M"

@@ -86,11 +86,10 @@ def draw(result, path):
         above = [row["highest"] - row["ns_per_bead_step"] for row in rows]
         axes.errorbar([row["beads"] for row in rows], median, (below, above), marker="o", capsize=3,
                       label=f"bulk, {rows[0]['kernel']}, {threads} thread{'s' if threads > 1 else ''}")
-    for kernel, marker in ((sizes[0]["kernel"], "s"), ("lammps", "^")):
-        rows = [row for row in workloads if row["kernel"] == kernel and row["threads"] == 1]
-        if rows:
-            axes.plot([row["beads"] for row in rows], [row["ns_per_bead_step"] for row in rows], marker, color="0.3",
-                      markerfacecolor="none", label=f"W1–W4, {kernel}, 1 thread")
+    rows = [row for row in workloads if row["kernel"] == sizes[0]["kernel"] and row["threads"] == 1]
+    if rows:
+        axes.plot([row["beads"] for row in rows], [row["ns_per_bead_step"] for row in rows], "s", color="0.3",
+                  markerfacecolor="none", label=f"W1–W4, {rows[0]['kernel']}, 1 thread")
     axes.set(xscale="log", xlabel="moving beads", ylabel="ns per moving bead and step",
              title=f"{result['machine']['cpu']}, {result['machine']['date'][:10]}")
     axes.set_ylim(bottom=0)
