@@ -330,6 +330,9 @@ def main():
     except (Unusable, OSError, subprocess.CalledProcessError) as problem:
         print(f"bench: {problem}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("bench: stopped, nothing is written", file=sys.stderr)
+        return 130
     print("written:", *files)
     busy = result["machine"]["others_cores"]
     if busy > BUSY:

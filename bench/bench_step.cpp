@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -94,7 +97,8 @@ std::string melted(const Workload& workload, const std::string& folder) {
   const int steps = static_cast<int>(std::clamp(2.5e7 / beads, 100.0, 500.0));
   for (int k = 0; k < steps; ++k) simulation.step();
   std::string state = simulation.save_state();
-  if (!path.empty()) std::ofstream(path, std::ios::binary) << state;
+  if (!path.empty() && !(std::ofstream(path, std::ios::binary) << state).flush())
+    throw std::runtime_error(path + ": write failed; is the disk full?");
   return state;
 }
 
@@ -155,9 +159,9 @@ void memory(benchmark::State& state, const Workload& workload) {
       (peak_resident_bytes() - before) / static_cast<double>(simulation.observe()->moving_beads);
 }
 
-benchmark::internal::Benchmark* add(const std::string& name, int threads, int iterations,
-                                    const std::function<void(benchmark::State&)>& run) {
-  return benchmark::RegisterBenchmark(name.c_str(), run)
+void add(const std::string& name, int threads, int iterations,
+         const std::function<void(benchmark::State&)>& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
       ->Arg(threads)
       ->ArgName("threads")
       ->Iterations(iterations)
@@ -193,7 +197,8 @@ Options own_options(int argc, char** argv) {
     } else if (key == "--threads=") {
       options.threads.clear();
       std::istringstream list(value);
-      for (std::string count; std::getline(list, count, ',');) options.threads.push_back(std::stoi(count));
+      for (std::string count; std::getline(list, count, ',');)
+        options.threads.push_back(std::atoi(count.c_str()));
       if (options.threads.empty() || *std::min_element(options.threads.begin(), options.threads.end()) < 1)
         throw std::invalid_argument(argument + ", allowed: counts of 1 or more, with commas between");
     } else {
@@ -207,16 +212,14 @@ Options own_options(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   prefer_short_spinning(argv);
   benchmark::Initialize(&argc, argv);
-  try {
-    add_all(own_options(argc, argv));
-  } catch (const std::exception& problem) {
-    std::cerr << "bench_step: " << problem.what() << '\n';
-    return 2;
-  }
   benchmark::AddCustomContext("compiler", DMF_COMPILER);
   benchmark::AddCustomContext("flags", DMF_COMPILER_FLAGS);
+  add_all(own_options(argc, argv));
   benchmark::RunSpecifiedBenchmarks();
+} catch (const std::exception& problem) {
+  std::cerr << "bench_step: " << problem.what() << '\n';
+  return 1;
 }
