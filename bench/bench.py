@@ -38,7 +38,6 @@ W3_NOTE = "W3 is the droplet alone: the 612 beads of a microparticle's shell joi
 LARGEST = "W4_bulk_1M"
 SLOW_KERNELS = ("scalar", "reference", "lammps")  # run once where a step takes seconds
 SHORT_ROUNDS = 3  # of the sizes and of LAMMPS
-BUSY = 0.05  # cores; when others take more, the figures are not to be trusted
 
 
 class Case(collections.namedtuple("Case", "workload kernel threads wait")):
@@ -263,7 +262,7 @@ def run(arguments, states):
     others = Others()
     time.sleep(1)
     busy = others.cores()
-    if busy > BUSY:
+    if busy > report.BUSY:
         tell(f"WARNING: this machine is not idle, other programs take {busy:.2f} cores: the figures will be too high")
     samples = measure(bench, lammps, cases, arguments.rounds)
     bytes_per_bead = None
@@ -335,7 +334,7 @@ def main():
         return 130
     print("written:", *files)
     busy = result["machine"]["others_cores"]
-    if busy > BUSY:
+    if busy > report.BUSY:
         tell(f"WARNING: other programs took {busy:.2f} cores meanwhile: the figures are too high")
     return 0
 

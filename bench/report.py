@@ -11,6 +11,7 @@ TITLES = {
 COLUMNS = ("workload", "beads", "kernel", "threads", "wait", "ns per bead-step", "runs", "spread", "reference/this",
            "1 thread/this", "LAMMPS/this")
 LEFT = ("workload", "kernel", "wait")
+BUSY = 0.05  # cores; when other programs take more, the figures are not to be trusted
 
 
 def split(rows):
@@ -49,7 +50,7 @@ def facts(result):
              f"them allowed; kernels: {', '.join(m['kernels'])}",
              f"{m['compiler']}, {m['flags'].strip()}; version {m['version']}; {m['date']}",
              f"load average at the start {m['load_average'][0]:.2f}; meanwhile other programs took "
-             f"{m['others_cores']:.2f} cores",
+             f"{m['others_cores']:.2f} cores" + (": THE FIGURES ARE TOO HIGH" if m["others_cores"] > BUSY else ""),
              "ns per bead-step: median of wall time over moving beads and steps; spread: largest less smallest, over the "
              "median; a/this: how many times as long a takes; wait: OMP_WAIT_POLICY, or the programs' own default"]
     if result["bytes_per_bead"]:
