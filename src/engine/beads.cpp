@@ -11,18 +11,25 @@ void Beads::add(const Record& at, const Record& moving, std::uint32_t bead_id) {
   id.push_back(bead_id);
 }
 
+void Beads::reserve_more(std::size_t count) {
+  for (AlignedVector<Record>* array : {&position, &predicted, &velocity, &force, &listed})
+    array->reserve(array->size() + count);
+  id.reserve(id.size() + count);
+}
+
 void Beads::reorder(const std::vector<std::uint32_t>& order) {
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(order.size());
-  scratch_.resize(order.size());
-  for (AlignedVector<Record>* array : {&position, &predicted, &velocity, &force, &listed}) {
+  for (AlignedVector<Record>* array : {&position, &predicted, &velocity, &force}) {
+    listed.resize(order.size());
     const Record* from = array->data();
-    Record* to = scratch_.data();
+    Record* to = listed.data();
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = from[order[k]];
-    array->swap(scratch_);
-    scratch_.resize(order.size());
+    array->swap(listed);
   }
+  listed.resize(order.size());
   scratch_id_.resize(order.size());
+#pragma omp parallel for schedule(static)
   for (std::ptrdiff_t k = 0; k < count; ++k) scratch_id_[k] = id[order[k]];
   id.swap(scratch_id_);
 }

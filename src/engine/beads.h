@@ -12,14 +12,18 @@ struct alignas(16) Record {
   float w = 0;
 };
 
-/// Starts vectors on a cache line, so that no record straddles two.
+/// Starts vectors on a cache line, so that no record straddles two, and leaves room behind them: kernels load
+/// whole registers, up to 16 records, from the last element on.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
   CacheLineAllocator() = default;
   template <class U>
   CacheLineAllocator(const CacheLineAllocator<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  static constexpr std::size_t slack = 16 * sizeof(Record);
+  T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new (n * sizeof(T) + slack, std::align_val_t{64}));
+  }
   void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
   template <class U>
   bool operator==(const CacheLineAllocator<U>&) const {
@@ -33,7 +37,7 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-/// The moving beads of the liquid, sorted by cell at every list build. Ids persist, indices do not.
+/// The moving beads of the liquid, sorted by cell now and then. Ids persist, indices do not.
 ///
 /// Which pass reads and writes what (so that no two threads meet):
 ///   drift    writes position, velocity (at half step), predicted.xyz
@@ -45,7 +49,7 @@ struct Beads {
   AlignedVector<Record> predicted;  ///< velocity that the pair forces see (Groot and Warren); w: density rho
   AlignedVector<Record> velocity;   ///< true velocity at the end of a step; w unused
   AlignedVector<Record> force;      ///< at the end of a step; w unused
-  AlignedVector<Record> listed;     ///< position when the neighbour list was built; w unused
+  AlignedVector<Record> listed;     ///< position when beads were sorted; w unused
   std::vector<std::uint32_t> id;
 
   std::size_t size() const { return id.size(); }
@@ -53,11 +57,14 @@ struct Beads {
   /// Appends a bead at rest forces. Call `Pairs::invalidate()` afterwards.
   void add(const Record& at, const Record& moving, std::uint32_t bead_id);
 
-  /// Reorders all arrays: the bead at order[k] moves to k. Drops beads whose index is missing from `order`.
+  /// Makes room for `count` more beads, so that adding them one by one does not double the arrays.
+  void reserve_more(std::size_t count);
+
+  /// Reorders all arrays but `listed`, which serves as scratch: the bead at order[k] moves to k. Drops beads
+  /// whose index is missing from `order`. Call `Pairs::rebuild()` afterwards.
   void reorder(const std::vector<std::uint32_t>& order);
 
  private:
-  AlignedVector<Record> scratch_;
   std::vector<std::uint32_t> scratch_id_;
 };
 

@@ -19,11 +19,12 @@ void CellGrid::sort(const Record* positions, std::size_t count, std::vector<std:
   cell_of_bead_.resize(count);
   order.resize(count);
   first.assign(cell_count() + 1, 0);
+#pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < count; ++i) {
     const Record& p = positions[i];
     cell_of_bead_[i] = static_cast<std::uint32_t>(cell_of(p.x, p.y, p.z));
-    ++first[cell_of_bead_[i] + 1];
   }
+  for (std::size_t i = 0; i < count; ++i) ++first[cell_of_bead_[i] + 1];
   for (std::size_t cell = 0; cell < cell_count(); ++cell) first[cell + 1] += first[cell];
   // Placing from the back turns first[c + 1] (end of c) into the running place without a second array.
   for (std::size_t i = count; i-- > 0;) order[--first[cell_of_bead_[i] + 1]] = static_cast<std::uint32_t>(i);
@@ -31,50 +32,56 @@ void CellGrid::sort(const Record* positions, std::size_t count, std::vector<std:
   first[cell_count()] = static_cast<std::uint32_t>(count);
 }
 
+PeriodicImages::PeriodicImages(const Eigen::Vector3f& period) {
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) shifts_[index(x, y, z)] = period.cwiseProduct(Eigen::Vector3f(x, y, z));
+}
+
 namespace {
 
+/// Cells [begin, end) along one axis, seen `image` periods away.
 struct AxisSpan {
-  int begin, end;  ///< cells [begin, end)
-  float shift;
+  int begin, end, image;
 };
 
-/// Cells begin-1 .. begin+1 along one axis, folded into the grid: up to three spans.
-int spans_around(const CellGrid& grid, const Domain& domain, int axis, int cell, AxisSpan* spans) {
+/// The cells along an axis that meet lower..upper, folded into the grid: up to three spans.
+int spans_between(const CellGrid& grid, const Domain& domain, int axis, float lower, float upper,
+                  AxisSpan* spans) {
+  if (!domain.periodic(axis)) {
+    spans[0] = {grid.coordinate(axis, lower), grid.coordinate(axis, upper) + 1, 0};
+    return 1;
+  }
   const int n = grid.cells[axis];
+  const int begin = grid.unbounded_coordinate(axis, lower), end = grid.unbounded_coordinate(axis, upper) + 1;
   int count = 0;
-  const int begin = std::max(cell - 1, 0), end = std::min(cell + 2, n);
-  if (begin < end) spans[count++] = {begin, end, 0.f};
-  if (domain.periodic(axis)) {
-    const float period = static_cast<float>(domain.size()[axis]);
-    if (cell - 1 < 0) spans[count++] = {n - 1, n, -period};
-    if (cell + 1 >= n) spans[count++] = {0, 1, period};
+  for (int image = -1; image <= 1; ++image) {
+    const AxisSpan span{std::max(begin - image * n, 0), std::min(end - image * n, n), image};
+    if (span.begin < span.end) spans[count++] = span;
   }
   return count;
 }
 
 }  // namespace
 
-bool candidate_runs(const CellGrid& grid, const Domain& domain, int x, int y, int z,
-                    std::vector<CandidateRun>& runs) {
-  runs.clear();
-  bool shifted = false;
+void append_runs(const CellGrid& grid, const Domain& domain, const Eigen::Vector3f& lower,
+                 const Eigen::Vector3f& upper, std::vector<BeadRun>& runs) {
   AxisSpan along_x[3], along_y[3], along_z[3];
-  const int nx = spans_around(grid, domain, 0, x, along_x);
-  const int ny = spans_around(grid, domain, 1, y, along_y);
-  const int nz = spans_around(grid, domain, 2, z, along_z);
+  const int nx = spans_between(grid, domain, 0, lower.x(), upper.x(), along_x);
+  const int ny = spans_between(grid, domain, 1, lower.y(), upper.y(), along_y);
+  const int nz = spans_between(grid, domain, 2, lower.z(), upper.z(), along_z);
   for (int kz = 0; kz < nz; ++kz)
-    for (int iz = along_z[kz].begin; iz < along_z[kz].end; ++iz)
+    for (int z = along_z[kz].begin; z < along_z[kz].end; ++z)
       for (int ky = 0; ky < ny; ++ky)
-        for (int iy = along_y[ky].begin; iy < along_y[ky].end; ++iy)
+        for (int y = along_y[ky].begin; y < along_y[ky].end; ++y)
           for (int kx = 0; kx < nx; ++kx) {
-            const std::size_t row = (static_cast<std::size_t>(iz) * grid.cells[1] + iy) * grid.cells[0];
+            const std::size_t row = (static_cast<std::size_t>(z) * grid.cells[1] + y) * grid.cells[0];
             const std::uint32_t begin = grid.first[row + along_x[kx].begin];
             const std::uint32_t end = grid.first[row + along_x[kx].end];
             if (begin == end) continue;
-            runs.push_back({begin, end, along_x[kx].shift, along_y[ky].shift, along_z[kz].shift});
-            shifted |= along_x[kx].shift != 0 || along_y[ky].shift != 0 || along_z[kz].shift != 0;
+            runs.push_back(
+                {begin, end, PeriodicImages::index(along_x[kx].image, along_y[ky].image, along_z[kz].image)});
           }
-  return shifted;
 }
 
 }  // namespace dmf::engine

@@ -22,9 +22,12 @@ struct CellGrid {
   std::vector<std::uint32_t> first;  ///< first bead of each cell; one more entry than cells
 
   std::size_t cell_count() const { return static_cast<std::size_t>(cells[0]) * cells[1] * cells[2]; }
+  /// Of the cell that holds the position if cells went on for ever.
+  int unbounded_coordinate(int axis, float position) const {
+    return static_cast<int>(std::floor((position - origin[axis]) * inverse_edge[axis]));
+  }
   int coordinate(int axis, float position) const {
-    return std::clamp(static_cast<int>(std::floor((position - origin[axis]) * inverse_edge[axis])), 0,
-                      cells[axis] - 1);
+    return std::clamp(unbounded_coordinate(axis, position), 0, cells[axis] - 1);
   }
   std::size_t cell_of(float x, float y, float z) const {
     return (static_cast<std::size_t>(coordinate(2, z)) * cells[1] + coordinate(1, y)) * cells[0] +
@@ -38,21 +41,39 @@ struct CellGrid {
   /// k-th.
   void sort(const Record* positions, std::size_t count, std::vector<std::uint32_t>& order);
 
+  std::size_t memory_bytes() const { return (first.capacity() + cell_of_bead_.capacity()) * 4; }
+
  private:
   std::vector<std::uint32_t> cell_of_bead_;
 };
 
-/// Consecutive beads [begin, end) that may be in range, and the shift that brings them next to the asking
-/// bead when they come from across a periodic side.
-struct CandidateRun {
+/// Consecutive beads [begin, end) of a grid, and the image of them that is meant.
+struct BeadRun {
   std::uint32_t begin, end;
-  float shift_x, shift_y, shift_z;
+  std::uint32_t image;  ///< index into PeriodicImages
 };
 
-/// Candidates for a bead in cell (x, y, z) of `grid`; coordinates may lie outside the grid along axes that
-/// are not periodic.
-/// @returns whether a run is shifted.
-bool candidate_runs(const CellGrid& grid, const Domain& domain, int x, int y, int z,
-                    std::vector<CandidateRun>& runs);
+/// The shifts by -1, 0 or +1 period along each axis.
+class PeriodicImages {
+ public:
+  static constexpr std::uint32_t here = 13;  ///< not shifted
+  PeriodicImages() : PeriodicImages(Eigen::Vector3f::Zero()) {}
+  /// @param period  r_c; along axes that are not periodic, any.
+  explicit PeriodicImages(const Eigen::Vector3f& period);
+
+  static std::uint32_t index(int x, int y, int z) {
+    return static_cast<std::uint32_t>((z + 1) * 9 + (y + 1) * 3 + x + 1);
+  }
+  /// What to add to a bead's position to find it in that image.
+  const Eigen::Vector3f& shift(std::uint32_t image) const { return shifts_[image]; }
+
+ private:
+  std::array<Eigen::Vector3f, 27> shifts_;
+};
+
+/// Appends the runs of all beads of `grid` in cells that meet the box lower..upper, which may reach over
+/// periodic sides by up to a period. Rows in order of z, y, x.
+void append_runs(const CellGrid& grid, const Domain& domain, const Eigen::Vector3f& lower,
+                 const Eigen::Vector3f& upper, std::vector<BeadRun>& runs);
 
 }  // namespace dmf::engine

@@ -22,6 +22,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
     constants_.period[axis] = static_cast<float>(parameters.domain.size()[axis]);
     constants_.inverse_period[axis] = 1.f / constants_.period[axis];
   }
+  constants_.images = PeriodicImages(constants_.period);
 }
 
 PairPass Forces::pass_over(Beads& beads, const PlaneWall& wall) const {

@@ -8,7 +8,7 @@ namespace dmf::engine {
 
 /// What a drift saw of the beads.
 struct DriftReport {
-  float largest_displacement_squared = 0;  ///< since the neighbour list was built, r_c^2
+  float largest_displacement_squared = 0;  ///< since beads were sorted, r_c^2
   std::int64_t wild_bead = -1;  ///< index of a bead that moved too far in this step, or not to a number
 };
 

@@ -1,15 +1,17 @@
 #include "engine/pairs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <tuple>
 
 namespace dmf::engine {
 namespace {
 
-/// Beads a block: small enough to balance threads, large enough to amortise its arrays.
+/// Fewest beads a block: few enough to balance threads, many enough to amortise its arrays.
 constexpr std::uint32_t block_size = 256;
-/// Slack behind x, y, z: the list build reads whole lanes.
-constexpr std::size_t slack = 64;
 
 float wrapped(float position, double lower, double period) {
   return static_cast<float>(position - period * std::floor((position - lower) / period));
@@ -22,68 +24,121 @@ Pairs::Pairs(const Parameters& parameters)
       range_(parameters.liquid.cutoff_radius + parameters.list_skin),
       squared_half_skin_(static_cast<float>(0.25 * parameters.list_skin * parameters.list_skin)) {}
 
-void Pairs::rebuild(Beads& beads, const PlaneWall& wall, const Kernels& kernels) {
-  const std::size_t count = beads.size();
-  Eigen::Vector3f lower = domain_.lower.cast<float>(), upper = domain_.upper.cast<float>();
-  if (count > 0) lower.setConstant(1e30f), upper.setConstant(-1e30f);
-  for (Record& p : beads.position) {
+void Pairs::lay_grid(const AlignedVector<Record>& positions) {
+  float lower_x = 1e30f, lower_y = 1e30f, lower_z = 1e30f, upper_x = -1e30f, upper_y = -1e30f,
+        upper_z = -1e30f;
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(positions.size());
+#pragma omp parallel for schedule(static) reduction(min                          \
+                                                    : lower_x, lower_y, lower_z) \
+    reduction(max                                                                \
+              : upper_x, upper_y, upper_z)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const Record& p = positions[i];
+    lower_x = std::min(lower_x, p.x);
+    lower_y = std::min(lower_y, p.y);
+    lower_z = std::min(lower_z, p.z);
+    upper_x = std::max(upper_x, p.x);
+    upper_y = std::max(upper_y, p.y);
+    upper_z = std::max(upper_z, p.z);
+  }
+  if (count == 0)
+    grid_.lay(domain_, domain_.lower.cast<float>(), domain_.upper.cast<float>(), range_);
+  else
+    grid_.lay(domain_, {lower_x, lower_y, lower_z}, {upper_x, upper_y, upper_z}, range_);
+}
+
+void Pairs::rebuild(Beads& beads, const PlaneWall& wall) {
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Record& p = beads.position[i];
     if (domain_.periodic(0)) p.x = wrapped(p.x, domain_.lower.x(), domain_.size().x());
     if (domain_.periodic(1)) p.y = wrapped(p.y, domain_.lower.y(), domain_.size().y());
     if (domain_.periodic(2)) p.z = wrapped(p.z, domain_.lower.z(), domain_.size().z());
-    const Eigen::Vector3f position(p.x, p.y, p.z);
-    lower = lower.cwiseMin(position);
-    upper = upper.cwiseMax(position);
   }
-  grid_.lay(domain_, lower, upper, range_);
-  grid_.sort(beads.position.data(), count, order_);
+  lay_grid(beads.position);
+  grid_.sort(beads.position.data(), beads.size(), order_);
   beads.reorder(order_);
   beads.listed = beads.position;
-  list_neighbours(beads, wall, kernels);
+  find_neighbourhoods(beads.listed, wall);
   ++builds_;
 }
 
-void Pairs::restore(Beads& beads, const PlaneWall& wall, const Kernels& kernels) {
+void Pairs::restore(const Beads& beads, const PlaneWall& wall) {
   // `listed` is sorted already; sorting it again is the identity, and gives the grid back.
-  Eigen::Vector3f lower = domain_.lower.cast<float>(), upper = domain_.upper.cast<float>();
-  if (beads.size() > 0) lower.setConstant(1e30f), upper.setConstant(-1e30f);
-  for (const Record& p : beads.listed) {
-    lower = lower.cwiseMin(Eigen::Vector3f(p.x, p.y, p.z));
-    upper = upper.cwiseMax(Eigen::Vector3f(p.x, p.y, p.z));
-  }
-  grid_.lay(domain_, lower, upper, range_);
+  lay_grid(beads.listed);
   grid_.sort(beads.listed.data(), beads.size(), order_);
-  list_neighbours(beads, wall, kernels);
+  find_neighbourhoods(beads.listed, wall);
 }
 
-void Pairs::list_neighbours(Beads& beads, const PlaneWall& wall, const Kernels& kernels) {
-  const std::size_t count = beads.size();
-  for (AlignedVector<float>* coordinate : {&x_, &y_, &z_}) coordinate->resize(count + slack);
-  for (std::size_t i = 0; i < count; ++i) {
-    x_[i] = beads.listed[i].x;
-    y_[i] = beads.listed[i].y;
-    z_[i] = beads.listed[i].z;
-  }
-  blocks_.resize((count + block_size - 1) / block_size);
-  const float wall_reach =
-      wall.size() > 0 ? static_cast<float>(wall.plane() + range_) : -std::numeric_limits<float>::infinity();
-  const ListPass pass{x_.data(),       y_.data(),       z_.data(),    &grid_,   wall.x().data(),
-                      wall.y().data(), wall.z().data(), &wall.grid(), &domain_, static_cast<float>(range_),
-                      wall_reach};
-#pragma omp parallel for schedule(dynamic, 1)
+void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const PlaneWall& wall) {
+  divide_into_blocks();
+  std::uint32_t most = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    blocks_[b].begin = static_cast<std::uint32_t>(b * block_size);
-    blocks_[b].end = static_cast<std::uint32_t>(std::min(count, (b + 1) * block_size));
-    kernels.list(pass, blocks_[b]);
+    for (NeighbourCell& cell : blocks_[b].cells) find_runs(blocks_[b], cell, listed, wall);
+    most = std::max({most, blocks_[b].slots, blocks_[b].wall_slots});
   }
+  if (most > NeighbourBlock::most_slots)
+    throw std::length_error(fmt::format("{} beads around one cell, allowed: {}", most,
+                                        std::uint32_t{NeighbourBlock::most_slots}));
   stale_ = false;
 }
 
+void Pairs::divide_into_blocks() {
+  std::size_t used = 0;
+  std::uint32_t end = 0;
+  for (std::size_t cell = 0; cell < grid_.cell_count(); ++cell) {
+    const std::uint32_t cell_begin = grid_.first[cell], cell_end = grid_.first[cell + 1];
+    if (cell_begin == cell_end) continue;
+    if (used == 0 || end - blocks_[used - 1].begin >= block_size) {
+      if (used == blocks_.size()) blocks_.emplace_back();
+      NeighbourBlock& block = blocks_[used++];
+      block.begin = cell_begin;
+      block.slots = block.wall_slots = 0;
+      block.cells.clear();
+      block.runs.clear();
+      block.wall_runs.clear();
+    }
+    blocks_[used - 1].cells.push_back({cell_begin, cell_end, 0, 0, 0, 0, false});
+    end = blocks_[used - 1].end = cell_end;
+  }
+  blocks_.resize(used);
+}
+
+void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
+                      const PlaneWall& wall) const {
+  Eigen::Vector3f lower = Eigen::Vector3f::Constant(1e30f), upper = -lower;
+  for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+    const Eigen::Vector3f at(listed[i].x, listed[i].y, listed[i].z);
+    lower = lower.cwiseMin(at);
+    upper = upper.cwiseMax(at);
+  }
+  lower.array() -= static_cast<float>(range_);
+  upper.array() += static_cast<float>(range_);
+  const auto append = [&](const CellGrid& grid, std::vector<BeadRun>& runs, std::uint32_t& slots) {
+    const std::size_t before = runs.size();
+    append_runs(grid, domain_, lower, upper, runs);
+    std::uint32_t count = 0;
+    for (std::size_t run = before; run < runs.size(); ++run) {
+      count += runs[run].end - runs[run].begin;
+      cell.across_periodic |= runs[run].image != PeriodicImages::here;
+    }
+    slots = std::max(slots, count);
+    return std::make_pair(static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(runs.size()));
+  };
+  std::tie(cell.first_run, cell.end_run) = append(grid_, block.runs, block.slots);
+  if (wall.size() > 0 && lower.z() <= wall.plane())
+    std::tie(cell.first_wall_run, cell.end_wall_run) = append(wall.grid(), block.wall_runs, block.wall_slots);
+  block.in_range_begin.resize(block.end - block.begin + 1);
+}
+
 std::size_t Pairs::memory_bytes() const {
-  std::size_t bytes = (x_.capacity() + y_.capacity() + z_.capacity()) * sizeof(float) +
-                      order_.capacity() * 4 + grid_.first.capacity() * 4;
+  std::size_t bytes = order_.capacity() * 4 + grid_.memory_bytes();
   for (const NeighbourBlock& block : blocks_)
-    bytes += block.rows.capacity() * sizeof(NeighbourRow) +
-             (block.liquid.capacity() + block.in_range.capacity() + block.wall.capacity()) * 4;
+    bytes += block.cells.capacity() * sizeof(NeighbourCell) +
+             (block.runs.capacity() + block.wall_runs.capacity()) * sizeof(BeadRun) +
+             block.in_range_begin.capacity() * 4 + block.in_range.capacity() * 2;
   return bytes;
 }
 

@@ -4,48 +4,52 @@
 
 #include "engine/beads.h"
 #include "engine/cell_grid.h"
-#include "engine/kernels/kernels.h"
+#include "engine/neighbours.h"
 #include "engine/parameters.h"
 #include "engine/walls/plane_wall.h"
 
 namespace dmf::engine {
 
-/// Which beads may feel each other: a full neighbour list (both i-j and j-i, so every bead sums its own
-/// forces and the sum does not depend on threads) of all pairs within r_c + skin, for liquid and wall beads
-/// apart. It stays valid until some bead has moved half the skin.
+/// Where to look for the beads in range of a bead: beads sorted into cells that are wider than r_c by the
+/// skin, and for every cell the runs of beads around it. Holds until some bead has moved half the skin; who
+/// is in range of whom is found anew in every step, by the density pass. Full: a pair is found from both
+/// sides, so every bead sums its own forces and the sum does not depend on threads.
 class Pairs {
  public:
   explicit Pairs(const Parameters& parameters);
 
-  /// The list must be rebuilt before the next use: beads were added, removed or put elsewhere.
+  /// Cells must be sorted anew before the next use: beads were added, removed or put elsewhere.
   void invalidate() { stale_ = true; }
-  /// @param largest_displacement_squared  since the last build, r_c^2.
+  /// @param largest_displacement_squared  since the last sort, r_c^2.
   bool stale(float largest_displacement_squared) const {
     return stale_ || largest_displacement_squared > squared_half_skin_;
   }
-  /// Wraps beads into periodic sides, sorts them by cell and lists neighbours. Order and list are a function
-  /// of positions and previous order only.
-  void rebuild(Beads& beads, const PlaneWall& wall, const Kernels& kernels);
+  /// Wraps beads into periodic sides and sorts them by cell. The order is a function of positions and
+  /// previous order only. @throws std::length_error when more beads crowd around a cell than slots can
+  /// number.
+  void rebuild(Beads& beads, const PlaneWall& wall);
 
-  /// Lists again from `beads.listed`, in the present order: restores the list of a saved state to the bit.
-  void restore(Beads& beads, const PlaneWall& wall, const Kernels& kernels);
+  /// Finds the cells again from `beads.listed`, in the present order: restores a saved state to the bit.
+  void restore(const Beads& beads, const PlaneWall& wall);
 
   std::vector<NeighbourBlock>& blocks() { return blocks_; }
   const std::vector<NeighbourBlock>& blocks() const { return blocks_; }
   std::uint64_t builds() const { return builds_; }
-  double range() const { return range_; }
   std::size_t memory_bytes() const;
 
  private:
-  void list_neighbours(Beads& beads, const PlaneWall& wall, const Kernels& kernels);
+  void lay_grid(const AlignedVector<Record>& positions);
+  void find_neighbourhoods(const AlignedVector<Record>& listed, const PlaneWall& wall);
+  void divide_into_blocks();
+  void find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
+                 const PlaneWall& wall) const;
 
   Domain domain_;
-  double range_;
+  double range_;  ///< r_c + skin
   float squared_half_skin_;
   bool stale_ = true;
   std::uint64_t builds_ = 0;
   CellGrid grid_;
-  AlignedVector<float> x_, y_, z_;  ///< positions at the build, sorted
   std::vector<std::uint32_t> order_;
   std::vector<NeighbourBlock> blocks_;
 };

@@ -56,12 +56,15 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
   }
 }
 
-/// A thermal velocity component: Box-Muller on two hashed words.
+/// A thermal velocity component of unit variance: twelve uniform numbers added up (Irwin and Hall), which is
+/// Gaussian enough for a start. Needs no logarithm, whose last bit depends on the processor.
 double thermal(StepKey key, std::uint32_t id, std::uint32_t component) {
-  const std::uint32_t first = bead_key(key, id * 6 + 2 * component);
-  const std::uint32_t second = bead_key(key, id * 6 + 2 * component + 1);
-  const double u = (first + 1.0) / 4294967297.0, angle = second / 4294967296.0 * 6.283185307179586;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(angle);
+  double sum = -6.0;
+  for (std::uint32_t word = 0; word < 6; ++word) {
+    const std::uint32_t bits = bead_key(key, id * 18 + 6 * component + word);
+    sum += ((bits & 0xffffu) + 0.5) / 65536.0 + ((bits >> 16) + 0.5) / 65536.0;
+  }
+  return sum;
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ void Simulation::step() {
   const DriftReport moved = drift(s.beads, s.parameters, s.step);
   s.require_sound_drift(moved);
 
-  if (s.pairs.stale(moved.largest_displacement_squared)) s.pairs.rebuild(s.beads, s.wall, s.forces.kernels());
+  if (s.pairs.stale(moved.largest_displacement_squared)) s.pairs.rebuild(s.beads, s.wall);
 
   s.forces.density(s.beads, s.wall, s.pairs);
   s.forces.force(s.beads, s.wall, s.pairs);
@@ -138,7 +138,7 @@ void Simulation::step() {
 void Simulation::refresh() {
   State& s = *state_;
   omp_set_num_threads(s.threads);
-  s.pairs.rebuild(s.beads, s.wall, s.forces.kernels());
+  s.pairs.rebuild(s.beads, s.wall);
   s.forces.density(s.beads, s.wall, s.pairs);
   s.tracker.update(s.step, s.beads, s.pairs.blocks());
 }
@@ -235,7 +235,7 @@ void Simulation::load_state(const std::string& bytes) {
         &loaded->beads.listed})
     if (array->size() != count) throw InvalidInput("saved state: arrays of unequal length");
   omp_set_num_threads(s.threads);
-  loaded->pairs.restore(loaded->beads, loaded->wall, loaded->forces.kernels());
+  loaded->pairs.restore(loaded->beads, loaded->wall);
   loaded->forces.density(loaded->beads, loaded->wall, loaded->pairs);
   state_ = std::move(loaded);
 }

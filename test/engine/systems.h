@@ -75,7 +75,7 @@ inline std::vector<System> all_systems() {
     scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
   }
   {
-    System& s = begin("smallest periodic box", periodic_box(3.6));
+    System& s = begin("smallest periodic box", periodic_box(3.75));
     scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
   }
   {

@@ -87,7 +87,7 @@ TEST_P(EveryKernel, AgreesWithTheSumOverAllPairs) {
     const PlaneWall wall = wall_of(system);
     Pairs pairs(system.parameters);
     const Forces forces(system.parameters, GetParam());
-    pairs.rebuild(system.beads, wall, forces.kernels());
+    pairs.rebuild(system.beads, wall);
     forces.density(system.beads, wall, pairs);
     forces.force(system.beads, wall, pairs);
     const Exact exact = sum_over_all_pairs(system, wall);
@@ -111,7 +111,7 @@ TEST_P(EveryKernel, ConservesMomentumAmongLiquidBeads) {
     const PlaneWall wall = wall_of(system);
     Pairs pairs(system.parameters);
     const Forces forces(system.parameters, GetParam());
-    pairs.rebuild(system.beads, wall, forces.kernels());
+    pairs.rebuild(system.beads, wall);
     forces.density(system.beads, wall, pairs);
     forces.force(system.beads, wall, pairs);
     Vector3d total = Vector3d::Zero();

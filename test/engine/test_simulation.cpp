@@ -2,41 +2,10 @@
 
 #include <cmath>
 
-#include "engine/simulation.h"
-#include "systems.h"
+#include "droplet_on_wall.h"
 
 namespace dmf::engine {
 namespace {
-
-constexpr double wetting_angle = 90;
-
-/// A droplet of about 1,000 beads on its wall, x and y periodic.
-Simulation droplet_on_wall(int threads, const std::string& kernel = "auto", std::uint64_t seed = 1) {
-  Parameters parameters = plate(16, 14);
-  parameters.seed = seed;
-  return Simulation(parameters, ContactAngleCurve::lan2016(), {threads, kernel});
-}
-
-void start_droplet(Simulation& simulation) {
-  simulation.set_wettability([](double, double) { return wetting_angle; });
-  simulation.add_droplet({{8, 8, 3}, 3.5});
-}
-
-std::uint64_t hash_after(Simulation& simulation, int steps) {
-  for (int k = 0; k < steps; ++k) simulation.step();
-  return *simulation.observe({false, true}).get()->state_hash;
-}
-
-TEST(Run, IsTheSameToTheBitForAnyNumberOfThreads) {
-  std::vector<std::uint64_t> hashes;
-  for (const int threads : {1, 2, 4}) {
-    Simulation simulation = droplet_on_wall(threads);
-    start_droplet(simulation);
-    hashes.push_back(hash_after(simulation, 400));
-  }
-  EXPECT_EQ(hashes[0], hashes[1]);
-  EXPECT_EQ(hashes[0], hashes[2]);
-}
 
 TEST(Run, DiffersBetweenSeeds) {
   Simulation one = droplet_on_wall(1, "auto", 1), two = droplet_on_wall(1, "auto", 2);

@@ -1,4 +1,14 @@
-// The two loops over pairs and the list build, compiled once per instruction set and chosen at run time.
+// The two loops over pairs, compiled once per instruction set and chosen at run time.
+//
+// No list of neighbours is kept. Beads are sorted by cell now and then; every step, for every cell,
+//
+//   pack     beads of the cells around it that lie within r_c of the box around the cell's beads: side by
+//   side sweep    each bead of the cell over them, a register at a time: who is in range, which slots (16
+//   bits each) density  from the distances that the sweep kept
+//
+// and, once all densities are known, the force pass goes over the slots in range. Packing and sweeping a
+// whole neighbourhood costs less than filtering lists with a skin and building them anew every third step
+// (docs/performance.md).
 #include "engine/kernels/kernels.h"
 
 #include <fmt/format.h>
@@ -15,6 +25,7 @@
 #include <hwy/highway.h>
 
 #include "engine/kernels/lanes-inl.h"
+#include "engine/kernels/packed.h"
 #include "engine/noise-inl.h"
 #include "engine/pair_law-inl.h"
 
@@ -31,12 +42,177 @@ HWY_INLINE MdpdLaw<Lanes> in_lanes(const MdpdLaw<double>& law) {
           lanes(law.random_amplitude)};
 }
 
+HWY_INLINE Lanes squared_length(Lanes x, Lanes y, Lanes z) { return x * x + y * y + z * z; }
+
+/// Closer than this is the bead itself. Two beads in the same place do not feel each other, instead of an
+/// infinite force.
+constexpr float smallest_squared_distance = 1e-12f;
+constexpr float far_away = 1e15f;
+
+// ---- pack and sweep: who is in range ----
+
+/// Where the beads of a cell are.
+struct Box {
+  float middle[3], half[3];
+};
+
+HWY_INLINE Box box_around(const Record* beads, std::uint32_t begin, std::uint32_t end) {
+  float lower[3] = {far_away, far_away, far_away}, upper[3] = {-far_away, -far_away, -far_away};
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const float at[3] = {beads[i].x, beads[i].y, beads[i].z};
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], at[axis]);
+      upper[axis] = std::max(upper[axis], at[axis]);
+    }
+  }
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.middle[axis] = 0.5f * (lower[axis] + upper[axis]);
+    // The hair more covers the rounding of this and of the distances to it.
+    box.half[axis] = 0.5f * (upper[axis] - lower[axis]) + 1e-3f;
+  }
+  return box;
+}
+
+/// Distance from the box along one axis.
+HWY_INLINE Lanes outside(Lanes at, float middle, float half) {
+  return maximum(absolute(at - Lanes(middle)) - Lanes(half), Lanes(0));
+}
+
+/// Packs the beads of `runs` that lie within the cutoff radius of the box. What names a packed bead is its
+/// slot, or its index when `by_index`.
+/// @returns how many; whole lanes behind them are far away.
+template <bool by_index>
+HWY_INLINE std::size_t pack(const Record* beads, const BeadRun* run, const BeadRun* end,
+                            const PeriodicImages& images, const Box& box, Lanes squared_cutoff,
+                            const Packed& to) {
+  std::size_t count = 0;
+  std::uint32_t slot = 0;
+  for (; run != end; slot += run->end - run->begin, ++run) {
+    const Eigen::Vector3f& shift = images.shift(run->image);
+    const Lanes shift_x(shift.x()), shift_y(shift.y()), shift_z(shift.z());
+    UnsignedLanes name = UnsignedLanes(by_index ? run->begin : slot) + lane_numbers();
+    for (std::uint32_t j = run->begin; j < run->end; j += lane_count) {
+      Lanes x, y, z;
+      load_consecutive(beads + j, x, y, z);
+      x = x + shift_x;
+      y = y + shift_y;
+      z = z + shift_z;
+      const Lanes squared_distance =
+          squared_length(outside(x, box.middle[0], box.half[0]), outside(y, box.middle[1], box.half[1]),
+                         outside(z, box.middle[2], box.half[2]));
+      const Selection near(both(first_lanes(run->end - j), squared_distance < squared_cutoff));
+      append(x, near, to.x + count);
+      append(y, near, to.y + count);
+      append(z, near, to.z + count);
+      append(name, near, to.name + count);
+      count += near.count();
+      name = name + UnsignedLanes(static_cast<std::uint32_t>(lane_count));
+    }
+  }
+  store_lanes(Lanes(far_away), to.x + count);
+  return count;
+}
+
+/// What a sweep looks for, as squared distances.
+struct Ranges {
+  Lanes cutoff, repulsion;
+};
+
+/// Who of the packed beads is in range of `bead`: appends their names to `names` and, for the density, the
+/// squared distances of those in the range of the repulsion to `squared_distances`. Writes whole lanes.
+/// @returns how many names; adds to `distances` how many distances.
+template <bool with_distances, class Name>
+HWY_INLINE std::size_t sweep(const Packed& packed, std::size_t packed_count, const Record& bead,
+                             const Ranges& ranges, Name* names, float* squared_distances,
+                             std::size_t& distances) {
+  const Lanes at_x(bead.x), at_y(bead.y), at_z(bead.z);
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < packed_count; k += lane_count) {
+    const Lanes r2 = squared_length(at_x - load_lanes(packed.x + k), at_y - load_lanes(packed.y + k),
+                                    at_z - load_lanes(packed.z + k));
+    const Mask another = Lanes(smallest_squared_distance) < r2;
+    const Selection in_range(both(another, r2 < ranges.cutoff));
+    append(load_lanes(packed.name + k), in_range, names + found);
+    found += in_range.count();
+    if constexpr (with_distances) {
+      const Selection repelled(both(another, r2 < ranges.repulsion));
+      append(r2, repelled, squared_distances + distances);
+      distances += repelled.count();
+    }
+  }
+  return found;
+}
+
+HWY_INLINE Ranges ranges_of(const MdpdLaw<double>& law) {
+  const auto squared = [](double inverse)
+                           HWY_ATTR { return Lanes(static_cast<float>(1.0 / (inverse * inverse))); };
+  return {squared(law.inverse_cutoff_radius), squared(law.inverse_repulsion_radius)};
+}
+
+// ---- density ----
+
+/// Room for `count` more entries after `used` and for what whole lanes write past them. Grows by an eighth: a
+/// block's count hardly changes.
+HWY_INLINE void make_room(std::vector<std::uint16_t>& entries, std::size_t used, std::size_t count) {
+  const std::size_t needed = used + count + 2 * lane_count;
+  if (entries.size() >= needed) return;
+  entries.reserve(needed + needed / 8);
+  entries.resize(needed + needed / 8);
+}
+
+HWY_INLINE float density_from(const float* squared_distances, std::size_t count,
+                              Lanes inverse_repulsion_radius) {
+  LaneSums<1> density;
+  for (std::size_t k = 0; k < count; k += lane_count) {
+    const Lanes weight =
+        density_weight(square_root(load_lanes(squared_distances + k)), inverse_repulsion_radius);
+    density.add(k, zero_unless(first_lanes(count - k), weight));
+  }
+  return density.total(0);
+}
+
+void density(const PairPass& pass, NeighbourBlock& block) {
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
+  const Ranges ranges = ranges_of(law);
+  const Lanes inverse_repulsion_radius(static_cast<float>(law.inverse_repulsion_radius));
+  const Packed packed = Workbench::of_this_thread().room_for(block);
+  std::size_t used = 0;
+  for (const NeighbourCell& cell : block.cells) {
+    const std::size_t candidates =
+        pack<false>(pass.position, &block.runs[cell.first_run], block.runs.data() + cell.end_run, pass.images,
+                    box_around(pass.position, cell.begin, cell.end), ranges.cutoff, packed);
+    std::size_t slots = 0, distances = 0;
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      block.in_range_begin[bead - block.begin] = static_cast<std::uint32_t>(used + slots);
+      packed.first_distance[bead - cell.begin] = static_cast<std::uint32_t>(distances);
+      slots += sweep<true>(packed, candidates, pass.position[bead], ranges, packed.in_range + slots,
+                           packed.squared_distance, distances);
+    }
+    packed.first_distance[cell.end - cell.begin] = static_cast<std::uint32_t>(distances);
+    make_room(block.in_range, used, slots);
+    std::copy_n(packed.in_range, slots, block.in_range.begin() + static_cast<std::ptrdiff_t>(used));
+    used += slots;
+    // Not in the loop above: reading back what overlapping stores have just written stalls the processor.
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      const std::uint32_t* first = &packed.first_distance[bead - cell.begin];
+      pass.predicted[bead].w =
+          static_cast<float>(pass.density_normalization) *
+          density_from(packed.squared_distance + first[0], first[1] - first[0], inverse_repulsion_radius);
+    }
+  }
+  block.in_range_begin[block.end - block.begin] = static_cast<std::uint32_t>(used);
+  // The force pass loads whole lanes: behind the last row, too, slots must exist.
+  make_room(block.in_range, used, 0);
+  std::fill_n(block.in_range.begin() + used, 2 * lane_count, std::uint16_t{0});
+}
+
+// ---- force ----
+
 /// Separation r_i - r_j, by the nearest image where `across_periodic`.
 struct Separation {
   Lanes x, y, z;
 };
-
-HWY_INLINE Lanes squared_length(Lanes x, Lanes y, Lanes z) { return x * x + y * y + z * z; }
 
 HWY_INLINE Lanes nearest_image(Lanes d, float period, float inverse_period) {
   return d - Lanes(period) * nearest_integer(d * Lanes(inverse_period));
@@ -53,70 +229,22 @@ HWY_INLINE Separation separation(const PairPass& pass, const Record& i, Lanes x,
   return d;
 }
 
-/// Coincident beads feel no force from each other instead of an infinite one.
-constexpr float smallest_squared_distance = 1e-12f;
+using ForceSum = LaneSums<3>;
 
-// ---- density ----
-
-template <bool across_periodic>
-HWY_INLINE void density_of_bead(const PairPass& pass, std::uint32_t bead, NeighbourBlock& block,
-                                NeighbourRow& row) {
-  const Record& i = pass.position[bead];
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
-  const Lanes squared_cutoff(
-      static_cast<float>(1.0 / (law.inverse_cutoff_radius * law.inverse_cutoff_radius)));
-  const Lanes inverse_repulsion_radius(static_cast<float>(law.inverse_repulsion_radius));
-  const std::uint32_t* neighbours = block.liquid.data() + row.liquid_begin;
-  std::uint32_t* hits = block.in_range.data() + row.liquid_begin;
-  std::size_t hit_count = 0;
-  Lanes density(0);
-  for (std::size_t k = 0; k < row.liquid_count; k += lane_count) {
-    Lanes x, y, z, key;
-    load_records(pass.position, neighbours + k, x, y, z, key);
-    const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r2 = squared_length(d.x, d.y, d.z);
-    const Mask in_range = both(first_lanes(row.liquid_count - k), r2 < squared_cutoff);
-    density = density + zero_unless(in_range, density_weight(square_root(r2), inverse_repulsion_radius));
-    hit_count += append(load_lanes(neighbours + k), in_range, hits + hit_count);
-  }
-  // The force pass loads whole lanes: let the tail point at a valid record.
-  for (std::size_t k = 0; k < lane_count; ++k) hits[hit_count + k] = bead * sizeof(Record);
-  row.hits = static_cast<std::uint16_t>(hit_count);
-  pass.predicted[bead].w = static_cast<float>(pass.density_normalization) * sum(density);
+HWY_INLINE void add_force(ForceSum& total, std::size_t k, const Separation& d, Lanes magnitude_over_r) {
+  total.add(k, magnitude_over_r * d.x, magnitude_over_r * d.y, magnitude_over_r * d.z);
 }
-
-void density(const PairPass& pass, NeighbourBlock& block) {
-  for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
-    NeighbourRow& row = block.rows[bead - block.begin];
-    if (row.across_periodic)
-      density_of_bead<true>(pass, bead, block, row);
-    else
-      density_of_bead<false>(pass, bead, block, row);
-  }
-}
-
-// ---- force ----
-
-struct ForceSum {
-  Lanes x, y, z;
-  HWY_INLINE void add(const Separation& d, Lanes magnitude_over_r) {
-    x = x + magnitude_over_r * d.x;
-    y = y + magnitude_over_r * d.y;
-    z = z + magnitude_over_r * d.z;
-  }
-};
 
 template <bool across_periodic>
 HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
-                             const NeighbourBlock& block, const NeighbourRow& row, ForceSum& total) {
+                             const SlotsOfBeads& in_range, std::size_t count, ForceSum& total) {
   const Record& i = pass.position[bead];
   const Record& moving = pass.predicted[bead];
   const UnsignedLanes key_i = bits_of(Lanes(i.w));
-  const std::uint32_t* hits = block.in_range.data() + row.liquid_begin;
-  for (std::size_t k = 0; k < row.hits; k += lane_count) {
+  for (std::size_t k = 0; k < count; k += lane_count) {
     Lanes x, y, z, key, vx, vy, vz, density;
-    load_records(pass.position, hits + k, x, y, z, key);
-    load_records(pass.predicted, hits + k, vx, vy, vz, density);
+    load_records(pass.position, in_range.from(k), x, y, z, key);
+    load_records(pass.predicted, in_range.from(k), vx, vy, vz, density);
     const Separation d = separation<across_periodic>(pass, i, x, y, z);
     const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
@@ -125,134 +253,81 @@ HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, st
         inverse_r;
     const Lanes zeta = pair_noise<Lanes>(key_i, bits_of(key));
     const Lanes force = mdpd_force(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
-    total.add(d, zero_unless(first_lanes(row.hits - k), force * inverse_r));
+    add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
   }
 }
 
 template <bool across_periodic>
 HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
-                           const NeighbourBlock& block, const NeighbourRow& row, ForceSum& total) {
+                           const std::uint32_t* in_range, std::size_t count, ForceSum& total) {
   const Record& i = pass.position[bead];
   const Record& moving = pass.predicted[bead];
   const UnsignedLanes key_i = bits_of(Lanes(i.w));
-  const Lanes squared_cutoff = Lanes(1) / (law.inverse_cutoff_radius * law.inverse_cutoff_radius);
-  const std::uint32_t* neighbours = block.wall.data() + row.wall_begin;
-  for (std::size_t k = 0; k < row.wall_count; k += lane_count) {
+  for (std::size_t k = 0; k < count; k += lane_count) {
     Lanes x, y, z, attraction;
-    load_records(pass.wall, neighbours + k, x, y, z, attraction);
+    load_records(pass.wall, BeadIndices{in_range + k}, x, y, z, attraction);
     const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r2 = squared_length(d.x, d.y, d.z);
-    const Lanes r = square_root(maximum(r2, Lanes(smallest_squared_distance)));
+    const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
     const Lanes approach =
         (d.x * Lanes(moving.x) + d.y * Lanes(moving.y) + d.z * Lanes(moving.z)) * inverse_r;
-    const Lanes zeta = pair_noise<Lanes>(key_i, wall_key(load_lanes(neighbours + k) >> 4));
+    const Lanes zeta = pair_noise<Lanes>(key_i, wall_key(load_lanes(in_range + k)));
     const Lanes force = mdpd_force(law, attraction, r, Lanes(moving.w), approach, zeta);
-    const Mask in_range = both(first_lanes(row.wall_count - k), r2 < squared_cutoff);
-    total.add(d, zero_unless(in_range, force * inverse_r));
+    add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
+  }
+}
+
+/// Writes the index of the bead in each slot.
+HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32_t* bead_in_slot) {
+  for (; run != end; ++run) {
+    UnsignedLanes index = UnsignedLanes(run->begin) + lane_numbers();
+    for (std::uint32_t j = 0; j < run->end - run->begin; j += lane_count) {
+      store_lanes(index, bead_in_slot + j);
+      index = index + UnsignedLanes(static_cast<std::uint32_t>(lane_count));
+    }
+    bead_in_slot += run->end - run->begin;
+  }
+}
+
+template <bool across_periodic>
+HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
+                              const Packed& packed) {
+  const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
+  const MdpdLaw<Lanes> wall_law = in_lanes(pass.laws(Species::liquid, Species::wall));
+  const Ranges wall_ranges = ranges_of(pass.laws(Species::liquid, Species::wall));
+  std::size_t wall_candidates = 0;
+  if (cell.first_wall_run < cell.end_wall_run)
+    wall_candidates = pack<true>(pass.wall, &block.wall_runs[cell.first_wall_run],
+                                 block.wall_runs.data() + cell.end_wall_run, pass.images,
+                                 box_around(pass.position, cell.begin, cell.end), wall_ranges.cutoff, packed);
+  number_slots(&block.runs[cell.first_run], block.runs.data() + cell.end_run, packed.bead_in_slot);
+  for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+    ForceSum total;
+    const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
+                                packed.bead_in_slot};
+    liquid_force<across_periodic>(pass, law, bead, in_range, block.in_range_count(bead), total);
+    if (wall_candidates > 0) {
+      std::size_t no_distances = 0;
+      const std::size_t count = sweep<false>(packed, wall_candidates, pass.position[bead], wall_ranges,
+                                             packed.wall_in_range, nullptr, no_distances);
+      // Whole lanes are loaded: what stands behind the last must name a bead.
+      store_lanes(UnsignedLanes(0), packed.wall_in_range + count);
+      wall_force<across_periodic>(pass, wall_law, bead, packed.wall_in_range, count, total);
+    }
+    pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
   }
 }
 
 void force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
-  const MdpdLaw<Lanes> wall_law = in_lanes(pass.laws(Species::liquid, Species::wall));
-  for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
-    const NeighbourRow& row = block.rows[bead - block.begin];
-    ForceSum total{Lanes(0), Lanes(0), Lanes(0)};
-    if (row.across_periodic) {
-      liquid_force<true>(pass, law, bead, block, row, total);
-      wall_force<true>(pass, wall_law, bead, block, row, total);
-    } else {
-      liquid_force<false>(pass, law, bead, block, row, total);
-      if (row.wall_count > 0) wall_force<false>(pass, wall_law, bead, block, row, total);
-    }
-    pass.force[bead] = {sum(total.x), sum(total.y), sum(total.z), 0.f};
-  }
+  const Packed packed = Workbench::of_this_thread().room_for(block);
+  for (const NeighbourCell& cell : block.cells)
+    if (cell.across_periodic)
+      force_on_cell<true>(pass, block, cell, packed);
+    else
+      force_on_cell<false>(pass, block, cell, packed);
 }
 
-// ---- list ----
-
-/// Appends the offsets of all candidates within `range` of (x, y, z), but not `self`. `to` has room for all
-/// of them.
-HWY_INLINE std::size_t list_in_range(const std::vector<CandidateRun>& runs, const float* xs, const float* ys,
-                                     const float* zs, float x, float y, float z, float range,
-                                     std::uint32_t self, std::uint32_t* to) {
-  const Lanes squared_range(range * range);
-  std::size_t found = 0;
-  for (const CandidateRun& run : runs) {
-    const Lanes from_x(x - run.shift_x), from_y(y - run.shift_y), from_z(z - run.shift_z);
-    for (std::uint32_t j = run.begin; j < run.end; j += lane_count) {
-      // Three numbers, not a struct: GCC 12 copies a struct of vectors through memory here, four times the
-      // cost.
-      const Lanes r2 = squared_length(from_x - load_lanes(xs + j), from_y - load_lanes(ys + j),
-                                      from_z - load_lanes(zs + j));
-      const UnsignedLanes index = UnsignedLanes(j) + lane_numbers();
-      const Mask near = both(first_lanes(run.end - j), r2 < squared_range);
-      found += append(index * UnsignedLanes(static_cast<std::uint32_t>(sizeof(Record))),
-                      both(near, different(index, UnsignedLanes(self))), to + found);
-    }
-  }
-  return found;
-}
-
-HWY_INLINE std::size_t candidate_count(const std::vector<CandidateRun>& runs) {
-  std::size_t count = 0;
-  for (const CandidateRun& run : runs) count += run.end - run.begin;
-  return count;
-}
-
-/// Room for `count` more entries after `used`, plus what whole lanes write past the end. Grows by half, so
-/// that a run reaches its size within a few builds.
-HWY_INLINE void make_room(std::vector<std::uint32_t>& entries, std::size_t used, std::size_t count) {
-  const std::size_t needed = used + count + 2 * lane_count;
-  if (entries.size() < needed) entries.resize(needed + needed / 2);
-}
-
-void list(const ListPass& pass, NeighbourBlock& block) {
-  constexpr std::uint32_t no_self = 0xffffffffu;
-  std::vector<CandidateRun> liquid_runs, wall_runs;
-  std::size_t listed_cell = static_cast<std::size_t>(-1), candidates = 0;
-  bool liquid_across = false;
-  block.liquid_used = block.wall_used = 0;
-  block.rows.assign(block.end - block.begin, {});
-  for (std::uint32_t bead = block.begin; bead < block.end; ++bead) {
-    const float x = pass.x[bead], y = pass.y[bead], z = pass.z[bead];
-    // Beads come sorted by cell: those of one cell share their candidates.
-    const std::size_t cell = pass.grid->cell_of(x, y, z);
-    if (cell != listed_cell) {
-      liquid_across = candidate_runs(*pass.grid, *pass.domain, pass.grid->coordinate(0, x),
-                                     pass.grid->coordinate(1, y), pass.grid->coordinate(2, z), liquid_runs);
-      candidates = candidate_count(liquid_runs);
-      listed_cell = cell;
-    }
-    NeighbourRow& row = block.rows[bead - block.begin];
-    make_room(block.liquid, block.liquid_used, candidates);
-    row.liquid_begin = static_cast<std::uint32_t>(block.liquid_used);
-    row.liquid_count =
-        static_cast<std::uint16_t>(list_in_range(liquid_runs, pass.x, pass.y, pass.z, x, y, z, pass.range,
-                                                 bead, block.liquid.data() + block.liquid_used));
-    block.liquid_used += row.liquid_count;
-    row.across_periodic = liquid_across;
-    if (z > pass.wall_reach) continue;
-    const bool wall_across = candidate_runs(*pass.wall_grid, *pass.domain, pass.wall_grid->coordinate(0, x),
-                                            pass.wall_grid->coordinate(1, y), 0, wall_runs);
-    make_room(block.wall, block.wall_used, candidate_count(wall_runs));
-    row.wall_begin = static_cast<std::uint32_t>(block.wall_used);
-    row.wall_count =
-        static_cast<std::uint16_t>(list_in_range(wall_runs, pass.wall_x, pass.wall_y, pass.wall_z, x, y, z,
-                                                 pass.range, no_self, block.wall.data() + block.wall_used));
-    block.wall_used += row.wall_count;
-    row.across_periodic |= wall_across;
-  }
-  // Whole lanes are read past the last row: they must name records that exist.
-  make_room(block.liquid, block.liquid_used, 0);
-  make_room(block.wall, block.wall_used, 0);
-  std::fill_n(block.liquid.begin() + block.liquid_used, 2 * lane_count, 0u);
-  std::fill_n(block.wall.begin() + block.wall_used, 2 * lane_count, 0u);
-  block.in_range.resize(block.liquid.size());
-}
-
-Kernels table() { return {hwy::TargetName(HWY_TARGET), lane_count, &list, &density, &force}; }
+Kernels table() { return {hwy::TargetName(HWY_TARGET), lane_count, &density, &force}; }
 
 }  // namespace dmf::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,6 +1,7 @@
 #include "engine/observe/droplet_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/multi_point.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -15,15 +16,71 @@ namespace {
 constexpr double wetting_height = 1.0;
 /// A bead with fewer neighbours in range is on its way out of the liquid and does not mark the footprint. The
 /// bulk has about 25, the rim about 10.
-constexpr std::uint16_t fewest_rim_neighbours = 8;
+constexpr std::uint32_t fewest_rim_neighbours = 8;
 /// The slab turns when the way of the droplet has turned by more than this cosine (45 degrees).
 constexpr double same_way_cosine = 0.70710678;
 
-const NeighbourRow& row_of(const std::vector<NeighbourBlock>& blocks, std::uint32_t bead) {
-  const std::uint32_t block_size = blocks.front().end - blocks.front().begin;
-  const NeighbourBlock& block = blocks[bead / block_size];
-  return block.rows[bead - block.begin];
-}
+/// Sets of connected beads, each with a root: its first bead. Across periodic sides a set may be wound: every
+/// bead knows in which image it stands, seen from the root (in periods, along each axis).
+class ConnectedBeads {
+ public:
+  explicit ConnectedBeads(std::size_t count) : links_(count) {
+    for (std::uint32_t bead = 0; bead < count; ++bead) links_[bead].parent = bead;
+  }
+
+  using Image = std::array<std::int16_t, 3>;
+
+  bool joined(std::uint32_t first, std::uint32_t second) {
+    return links_[first].parent == links_[second].parent || root(first) == root(second);
+  }
+
+  /// Joins the sets of two beads that are not joined yet, the second of which stands in `image` seen from the
+  /// first.
+  void join(std::uint32_t first, std::uint32_t second, const Image& image) {
+    const std::uint32_t a = root(first), b = root(second);
+    // second's root seen from first's root.
+    const Image between = difference(sum(image_of(first), image), image_of(second));
+    if (a < b) {
+      links_[b] = {a, between};
+    } else {
+      links_[a] = {b, difference({}, between)};
+    }
+  }
+
+  /// Afterwards the bead hangs directly on its root.
+  std::uint32_t root(std::uint32_t bead) {
+    if (links_[bead].parent == bead) return bead;
+    std::uint32_t top = bead;
+    Image image{};
+    while (links_[top].parent != top) {
+      image = sum(image, links_[top].image);
+      top = links_[top].parent;
+    }
+    while (links_[bead].parent != top) {
+      const Link next = links_[bead];
+      links_[bead] = {top, image};
+      image = difference(image, next.image);
+      bead = next.parent;
+    }
+    return top;
+  }
+  /// Of a bead seen from its root; root(bead) must have been called since the last join.
+  const Image& image_of(std::uint32_t bead) const { return links_[bead].image; }
+
+ private:
+  struct Link {
+    std::uint32_t parent;
+    Image image{};
+  };
+  static Image sum(const Image& a, const Image& b) {
+    return {std::int16_t(a[0] + b[0]), std::int16_t(a[1] + b[1]), std::int16_t(a[2] + b[2])};
+  }
+  static Image difference(const Image& a, const Image& b) {
+    return {std::int16_t(a[0] - b[0]), std::int16_t(a[1] - b[1]), std::int16_t(a[2] - b[2])};
+  }
+
+  std::vector<Link> links_;
+};
 
 std::vector<Eigen::Vector2f> convex_outline(const std::vector<Eigen::Vector2d>& points, double& area) {
   namespace bg = boost::geometry;
@@ -68,41 +125,47 @@ void DropletTracker::update(std::uint64_t step, const Beads& beads,
 
 std::vector<DropletTracker::Component> DropletTracker::connected_components(
     const Beads& beads, const std::vector<NeighbourBlock>& blocks) const {
-  std::vector<Component> components;
-  if (beads.size() == 0) return components;
-  const std::uint32_t block_size = blocks.front().end - blocks.front().begin;
-  const Vector3d size = parameters_.domain.size();
-  std::vector<char> seen(beads.size(), 0);
-  const auto position = [&](std::uint32_t bead) {
-    const Record& p = beads.position[bead];
-    return Vector3d(p.x, p.y, p.z);
-  };
-  for (std::uint32_t first = 0; first < beads.size(); ++first) {
-    if (seen[first]) continue;
-    seen[first] = 1;
-    Component component;
-    component.beads.push_back(first);
-    component.positions.push_back(position(first));
-    for (std::size_t k = 0; k < component.beads.size(); ++k) {  // breadth first: the list is the queue
-      const std::uint32_t bead = component.beads[k];
-      const NeighbourBlock& block = blocks[bead / block_size];
-      const NeighbourRow& row = block.rows[bead - block.begin];
-      for (std::uint32_t hit = 0; hit < row.hits; ++hit) {
-        const std::uint32_t other = block.in_range[row.liquid_begin + hit] / sizeof(Record);
-        if (seen[other]) continue;
-        seen[other] = 1;
-        component.beads.push_back(other);
-        Vector3d apart = position(other) - position(bead);
-        for (int axis = 0; axis < 3; ++axis)
-          if (parameters_.domain.periodic(axis))
-            apart[axis] -= size[axis] * std::nearbyint(apart[axis] / size[axis]);
-        component.positions.push_back(component.positions[k] + apart);
+  const Eigen::Vector3f size = parameters_.domain.size().cast<float>();
+  const bool periodic[3] = {parameters_.domain.periodic(0), parameters_.domain.periodic(1),
+                            parameters_.domain.periodic(2)};
+  // In which image a neighbour stands: whole periods between the two positions.
+  const auto image = [&](const Record& i, const Record& j) {
+    const float apart[3] = {i.x - j.x, i.y - j.y, i.z - j.z};
+    ConnectedBeads::Image result{};
+    for (int axis = 0; axis < 3; ++axis)
+      if (periodic[axis]) {
+        if (apart[axis] > 0.5f * size[axis]) result[axis] = 1;
+        if (apart[axis] < -0.5f * size[axis]) result[axis] = -1;
       }
-    }
-    if (component.beads.size() < fewest_beads) continue;
-    for (const std::uint32_t bead : component.beads)
-      if (const std::uint32_t before = droplet_of(beads.id[bead])) ++component.beads_from[before];
-    components.push_back(std::move(component));
+    return result;
+  };
+  ConnectedBeads connected(beads.size());
+  for (const NeighbourBlock& block : blocks)
+    for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
+      if (j < i && !connected.joined(i, j)) connected.join(i, j, image(beads.position[i], beads.position[j]));
+    });
+
+  std::vector<std::uint32_t> beads_of_root(beads.size(), 0);
+  for (std::uint32_t bead = 0; bead < beads.size(); ++bead) ++beads_of_root[connected.root(bead)];
+  std::vector<Component> components;
+  std::map<std::uint32_t, std::size_t> component_of_root;
+  for (std::uint32_t root = 0; root < beads.size(); ++root) {
+    if (beads_of_root[root] < fewest_beads) continue;
+    component_of_root[root] = components.size();
+    components.emplace_back();
+    components.back().beads.reserve(beads_of_root[root]);
+    components.back().positions.reserve(beads_of_root[root]);
+  }
+  for (std::uint32_t bead = 0; bead < beads.size(); ++bead) {
+    const std::uint32_t root = connected.root(bead);
+    if (beads_of_root[root] < fewest_beads) continue;
+    Component& component = components[component_of_root.at(root)];
+    component.beads.push_back(bead);
+    const Record& p = beads.position[bead];
+    const ConnectedBeads::Image& seen = connected.image_of(bead);
+    component.positions.emplace_back(p.x + seen[0] * size.x(), p.y + seen[1] * size.y(),
+                                     p.z + seen[2] * size.z());
+    if (const std::uint32_t before = droplet_of(beads.id[bead])) ++component.beads_from[before];
   }
   return components;
 }
@@ -168,17 +231,17 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   droplet.volume = count / parameters_.liquid.bulk_density;
 
   Vector3d velocity = Vector3d::Zero();
-  droplet.lower = droplet.upper = component.positions.front();
+  droplet.lower = droplet.upper = component.positions.front().cast<double>();
   std::vector<Eigen::Vector2d> wetting;
   for (std::size_t k = 0; k < component.beads.size(); ++k) {
-    const Vector3d& position = component.positions[k];
+    const Vector3d position = component.positions[k].cast<double>();
     const Record& v = beads.velocity[component.beads[k]];
     droplet.centroid += position / count;
     velocity += Vector3d(v.x, v.y, v.z) / count;
     droplet.lower = droplet.lower.cwiseMin(position);
     droplet.upper = droplet.upper.cwiseMax(position);
     if (parameters_.domain.has_wall() && position.z() - wall_plane_ < wetting_height &&
-        row_of(blocks, component.beads[k]).hits >= fewest_rim_neighbours)
+        block_of(blocks, component.beads[k]).in_range_count(component.beads[k]) >= fewest_rim_neighbours)
       wetting.push_back(position.head<2>());
   }
   // Mean over the window. A droplet starts at rest.
@@ -215,7 +278,7 @@ void DropletTracker::measure_angles(DropletObservation& droplet, const Component
     angles.turn(horizontal.normalized());
   angles.begin_sample(elapsed, parameters_.angle_window);
   const Vector3d foot(droplet.centroid.x(), droplet.centroid.y(), wall_plane_);
-  for (const Vector3d& position : component.positions) angles.add(position - foot);
+  for (const Eigen::Vector3f& position : component.positions) angles.add(position.cast<double>() - foot);
   if (const auto found = angles.angles(parameters_.liquid.bulk_density)) {
     droplet.advancing_angle = found->advancing;
     droplet.receding_angle = found->receding;

@@ -6,7 +6,7 @@
 
 #include "engine/archive.h"
 #include "engine/beads.h"
-#include "engine/kernels/kernels.h"
+#include "engine/neighbours.h"
 #include "engine/observe/contact_angle.h"
 #include "engine/observe/snapshot.h"
 #include "engine/parameters.h"
@@ -42,7 +42,7 @@ class DropletTracker {
  private:
   struct Component {
     std::vector<std::uint32_t> beads;                 ///< indices
-    std::vector<Vector3d> positions;                  ///< unwrapped: continuous across periodic sides
+    std::vector<Eigen::Vector3f> positions;           ///< unwrapped: continuous across periodic sides
     std::map<std::uint32_t, std::size_t> beads_from;  ///< by previous droplet
     std::uint32_t id = 0;
   };

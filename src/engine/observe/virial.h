@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/beads.h"
-#include "engine/kernels/kernels.h"
+#include "engine/neighbours.h"
 #include "engine/parameters.h"
 
 namespace dmf::engine {

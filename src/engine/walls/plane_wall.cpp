@@ -32,18 +32,11 @@ PlaneWall::PlaneWall(const Domain& domain, const WallParameters& wall, double ra
   const double thickness = 0.5 * (wall.layers - 1) * wall.lattice_constant;
   grid_.lay(domain, domain.lower.cast<float>() - Eigen::Vector3f(0, 0, static_cast<float>(thickness)),
             domain.upper.cast<float>(), range);
-  // One cell across the layers: a run along x then holds a whole column of wall below the bead.
+  // One cell across the layers: a run along x then holds a whole strip of wall below a bead.
   grid_.cells[2] = 1;
   std::vector<std::uint32_t> order;
   grid_.sort(unsorted.data(), unsorted.size(), order);
-  for (const std::uint32_t k : order) {
-    beads_.push_back(unsorted[k]);
-    x_.push_back(unsorted[k].x);
-    y_.push_back(unsorted[k].y);
-    z_.push_back(unsorted[k].z);
-  }
-  // The list build loads whole lanes past the end of a run.
-  for (AlignedVector<float>* coordinate : {&x_, &y_, &z_}) coordinate->resize(beads_.size() + 64, 0.f);
+  for (const std::uint32_t k : order) beads_.push_back(unsorted[k]);
 }
 
 std::vector<float> PlaneWall::attraction() const {

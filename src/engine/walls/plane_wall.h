@@ -23,9 +23,6 @@ class PlaneWall {
   double plane() const { return plane_; }                        ///< z of the bounce-back plane
   const AlignedVector<Record>& beads() const { return beads_; }  ///< x, y, z; w: A_lw
   const CellGrid& grid() const { return grid_; }
-  const AlignedVector<float>& x() const { return x_; }
-  const AlignedVector<float>& y() const { return y_; }
-  const AlignedVector<float>& z() const { return z_; }
 
   std::vector<float> attraction() const;  ///< A_lw of every wall bead, in storage order
   /// @throws InvalidInput, unchanged, unless there is one value for each wall bead.
@@ -37,7 +34,6 @@ class PlaneWall {
  private:
   double plane_ = 0;
   AlignedVector<Record> beads_;
-  AlignedVector<float> x_, y_, z_;  ///< the same positions for the list build
   CellGrid grid_;
 };
 
