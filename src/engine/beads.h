@@ -46,6 +46,7 @@ struct Beads {
   AlignedVector<Record> velocity;   ///< true velocity at the end of a step; w unused
   AlignedVector<Record> force;      ///< at the end of a step; w unused
   AlignedVector<Record> listed;     ///< position when the neighbour list was built; w unused
+  AlignedVector<Record> random;     ///< sum of the random pair forces: scratch of a BAOAB step
   std::vector<std::uint32_t> id;
 
   std::size_t size() const { return id.size(); }

@@ -106,7 +106,7 @@ struct ForceSum {
   }
 };
 
-template <bool across_periodic>
+template <PairForce part, bool across_periodic>
 HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
                              const NeighbourBlock& block, const NeighbourRow& row, ForceSum& total) {
   const Record& i = pass.position[bead];
@@ -124,12 +124,12 @@ HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, st
         (d.x * (Lanes(moving.x) - vx) + d.y * (Lanes(moving.y) - vy) + d.z * (Lanes(moving.z) - vz)) *
         inverse_r;
     const Lanes zeta = pair_noise<Lanes>(key_i, bits_of(key));
-    const Lanes force = mdpd_force(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
+    const Lanes force = pair_force<part>(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
     total.add(d, zero_unless(first_lanes(row.hits - k), force * inverse_r));
   }
 }
 
-template <bool across_periodic>
+template <PairForce part, bool across_periodic>
 HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
                            const NeighbourBlock& block, const NeighbourRow& row, ForceSum& total) {
   const Record& i = pass.position[bead];
@@ -147,12 +147,13 @@ HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std:
     const Lanes approach =
         (d.x * Lanes(moving.x) + d.y * Lanes(moving.y) + d.z * Lanes(moving.z)) * inverse_r;
     const Lanes zeta = pair_noise<Lanes>(key_i, wall_key(load_lanes(neighbours + k) >> 4));
-    const Lanes force = mdpd_force(law, attraction, r, Lanes(moving.w), approach, zeta);
+    const Lanes force = pair_force<part>(law, attraction, r, Lanes(moving.w), approach, zeta);
     const Mask in_range = both(first_lanes(row.wall_count - k), r2 < squared_cutoff);
     total.add(d, zero_unless(in_range, force * inverse_r));
   }
 }
 
+template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
   const MdpdLaw<Lanes> wall_law = in_lanes(pass.laws(Species::liquid, Species::wall));
@@ -160,11 +161,11 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
     const NeighbourRow& row = block.rows[bead - block.begin];
     ForceSum total{Lanes(0), Lanes(0), Lanes(0)};
     if (row.across_periodic) {
-      liquid_force<true>(pass, law, bead, block, row, total);
-      wall_force<true>(pass, wall_law, bead, block, row, total);
+      liquid_force<part, true>(pass, law, bead, block, row, total);
+      wall_force<part, true>(pass, wall_law, bead, block, row, total);
     } else {
-      liquid_force<false>(pass, law, bead, block, row, total);
-      if (row.wall_count > 0) wall_force<false>(pass, wall_law, bead, block, row, total);
+      liquid_force<part, false>(pass, law, bead, block, row, total);
+      if (row.wall_count > 0) wall_force<part, false>(pass, wall_law, bead, block, row, total);
     }
     pass.force[bead] = {sum(total.x), sum(total.y), sum(total.z), 0.f};
   }
@@ -252,7 +253,14 @@ void list(const ListPass& pass, NeighbourBlock& block) {
   block.in_range.resize(block.liquid.size());
 }
 
-Kernels table() { return {hwy::TargetName(HWY_TARGET), lane_count, &list, &density, &force}; }
+Kernels table() {
+  return {hwy::TargetName(HWY_TARGET),
+          lane_count,
+          &list,
+          &density,
+          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
+           &force<PairForce::friction>}};
+}
 
 }  // namespace dmf::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -56,9 +57,10 @@ struct ListPass {
 struct Kernels {
   const char* name;
   std::size_t lanes;
-  void (*list)(const ListPass&, NeighbourBlock&);         ///< fills rows, liquid, wall of a block
-  void (*density)(const PairPass&, NeighbourBlock&);      ///< rho of the block's beads, and in_range
-  void (*force)(const PairPass&, const NeighbourBlock&);  ///< needs the density of all beads
+  void (*list)(const ListPass&, NeighbourBlock&);     ///< fills rows, liquid, wall of a block
+  void (*density)(const PairPass&, NeighbourBlock&);  ///< rho of the block's beads, and in_range
+  /// By PairForce. `all` and `conservative` need the density of all beads.
+  std::array<void (*)(const PairPass&, const NeighbourBlock&), 4> force;
 };
 
 /// Names that this processor can run, best first.

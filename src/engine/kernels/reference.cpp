@@ -11,7 +11,7 @@ namespace dmf::engine {
 namespace {
 
 using HWY_NAMESPACE::density_weight;
-using HWY_NAMESPACE::mdpd_force;
+using HWY_NAMESPACE::pair_force;
 using HWY_NAMESPACE::pair_noise;
 using HWY_NAMESPACE::wall_key;
 
@@ -86,6 +86,7 @@ void density(const PairPass& pass, NeighbourBlock& block) {
   }
 }
 
+template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
@@ -103,7 +104,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       const double approach = d.dot(velocity_of(moving) - velocity_of(pass.predicted[other])) / r;
       const double zeta = pair_noise<double>(key_bits(i.w), key_bits(j.w));
       const double density_sum = double(moving.w) + pass.predicted[other].w;
-      total += mdpd_force(law, law.attraction, r, density_sum, approach, zeta) / r * d;
+      total += pair_force<part>(law, law.attraction, r, density_sum, approach, zeta) / r * d;
     }
     for (std::uint32_t k = 0; k < row.wall_count; ++k) {
       const std::size_t other = index_of(block.wall[row.wall_begin + k]);
@@ -113,7 +114,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       const double r = std::max(d.norm(), 1e-6);
       const double approach = d.dot(velocity_of(moving)) / r;
       const double zeta = pair_noise<double>(key_bits(i.w), wall_key(static_cast<std::uint32_t>(other)));
-      total += mdpd_force(wall_law, double(j.w), r, double(moving.w), approach, zeta) / r * d;
+      total += pair_force<part>(wall_law, double(j.w), r, double(moving.w), approach, zeta) / r * d;
     }
     pass.force[bead] = {static_cast<float>(total.x()), static_cast<float>(total.y()),
                         static_cast<float>(total.z()), 0};
@@ -122,6 +123,13 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
 
 }  // namespace
 
-Kernels reference_kernels() { return {"reference", 1, &list, &density, &force}; }
+Kernels reference_kernels() {
+  return {"reference",
+          1,
+          &list,
+          &density,
+          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
+           &force<PairForce::friction>}};
+}
 
 }  // namespace dmf::engine
