@@ -67,7 +67,7 @@ struct Domain {
 /// How a step goes from forces to positions (docs/physics.md compares them).
 enum class Integrator {
   groot_warren,  ///< Groot and Warren's modified velocity-Verlet (1997)
-  baoab,         ///< splitting, Leimkuhler and Matthews (2013): twice to three times the time step
+  baoab,         ///< splitting, Leimkuhler and Matthews (2013): good up to a time step of 0.03
 };
 
 struct Parameters {

@@ -33,7 +33,7 @@ struct MeanAndSpread {
 };
 MeanAndSpread mean_and_spread(const std::vector<double>& values);
 
-/// " baoab", or nothing for the default: what a run's key says of its integrator.
+/// What a run's key says of its integrator: " baoab", or nothing for the default.
 std::string integrator_key(engine::Integrator integrator);
 
 /// Results of runs, one a line in a CSV file, written as soon as they are there: a study that was killed goes

@@ -101,8 +101,8 @@ TEST(Thermostat, IsTheMatrixPolynomialThatItClaims) {
 }
 
 TEST(Thermostat, ComesCloseToTheImplicitMidpointRule) {
-  // That rule solves (1 + A) v+ = (1 - A) v + N. With P and Q the difference is that of the polynomials over
-  // the eigenvalues of A, here up to about 0.5: a few percent of the impulses in the stiffest modes.
+  // That rule solves (1 + A) v+ = (1 - A) v + N. P and Q differ from its functions of A by a few percent of
+  // the impulse in the stiffest modes.
   System system = wet_corner(0.01);
   const PlaneWall wall = wall_of(system);
   Pairs pairs(system.parameters);
@@ -141,8 +141,8 @@ TEST(Thermostat, KeepsTheMaxwellDistributionOverFrozenBeads) {
     for (const Record& v : system.beads.velocity)
       temperature += vector_of(v).squaredNorm() / (3.0 * looks * system.beads.size());
   }
-  // 3,072 beads, remembered for about 3 steps: 0.15 % of scatter. Scattered beads are stiffer than a liquid:
-  // eigenvalues of A up to 1 here.
+  // 3,072 beads, remembered for about 3 steps: 0.15 % of scatter. Scattered beads come closer than a liquid's
+  // and have stiffer modes.
   EXPECT_NEAR(temperature, 1.0, 0.01);
 }
 

@@ -208,6 +208,7 @@ void study_time_step(const StudyOptions& options) {
       for (const double skin : skins)
         if (const double ns = costs.row(cost_key(scheme, dt, skin))[0]; ns < best)
           best = ns, best_skin = skin;
+      if (!std::isfinite(best)) continue;  // unstable
       summarize("ns_per_bead_step", scheme, dt, {best});
       summarize("best_skin", scheme, dt, {best_skin});
       summarize("tau_per_second_10000_beads", scheme, dt, {dt / (best * 1e-9 * 1e4)});
