@@ -167,6 +167,9 @@ void read_engine(const YamlReader& root, engine::Parameters& parameters) {
   parameters.domain = read_domain(root);
   parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
   parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
+  parameters.integrator = root.choice("integrator", {"groot_warren", "baoab"}, "groot_warren") == "baoab"
+                              ? engine::Integrator::baoab
+                              : engine::Integrator::groot_warren;
   parameters.integrator_lambda = root.number("integrator_lambda", {}, parameters.integrator_lambda);
   parameters.list_skin = root.quantity("list_skin", Dimension::length, {}, parameters.list_skin);
   parameters.observe_interval = static_cast<std::uint32_t>(

@@ -44,12 +44,15 @@ using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 ///   density  reads position; writes predicted.w (rho) of its own bead
 ///   force    reads position, predicted; writes force of its own bead
 ///   finish   reads force; writes velocity
+/// With BAOAB the force pass runs for one part of the forces at a time and writes random or force; the
+/// thermostat writes predicted.xyz and velocity between two of them.
 struct Beads {
   AlignedVector<Record> position;   ///< x, y, z; w: bits of the bead's noise key of this step
-  AlignedVector<Record> predicted;  ///< velocity that the pair forces see (Groot and Warren); w: density rho
-  AlignedVector<Record> velocity;   ///< true velocity at the end of a step; w unused
-  AlignedVector<Record> force;      ///< at the end of a step; w unused
+  AlignedVector<Record> predicted;  ///< velocity that the pair forces see; w: density rho
+  AlignedVector<Record> velocity;   ///< at the end of a step, with BAOAB half a kick before it; w unused
+  AlignedVector<Record> force;      ///< at the end of a step, with BAOAB conservative ones only; w unused
   AlignedVector<Record> listed;     ///< position when beads were sorted; w unused
+  AlignedVector<Record> random;     ///< sum of the random pair forces: scratch of a BAOAB step
   std::vector<std::uint32_t> id;
 
   std::size_t size() const { return id.size(); }

@@ -42,10 +42,18 @@ void Forces::density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
 }
 
 void Forces::force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
-  const PairPass pass = pass_over(beads, wall);
+  force(PairForce::all, beads.force, beads, wall, pairs);
+}
+
+void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const PlaneWall& wall,
+                   Pairs& pairs) const {
+  to.resize(beads.size());
+  PairPass pass = pass_over(beads, wall);
+  pass.force = to.data();
   const std::vector<NeighbourBlock>& blocks = pairs.blocks();
+  const auto kernel = kernels_.force[static_cast<std::size_t>(part)];
 #pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t b = 0; b < blocks.size(); ++b) kernels_.force(pass, blocks[b]);
+  for (std::size_t b = 0; b < blocks.size(); ++b) kernel(pass, blocks[b]);
 }
 
 }  // namespace dmf::engine

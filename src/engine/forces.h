@@ -20,6 +20,10 @@ class Forces {
   void density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
   /// Forces of every bead; needs density().
   void force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
+  /// One part of them: `to` gets the sums. Random forces need who is in range (density()) and keys, friction
+  /// besides the velocities in `beads.predicted`.
+  void force(PairForce part, AlignedVector<Record>& to, Beads& beads, const PlaneWall& wall,
+             Pairs& pairs) const;
 
   const Kernels& kernels() const { return kernels_; }
   const std::string& kernel_name() const { return kernel_name_; }

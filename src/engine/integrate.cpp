@@ -45,12 +45,14 @@ float fraction_to_plane(const Planes& planes, const float* from, const float* wa
   return std::max(fraction, 0.f);
 }
 
-}  // namespace
+/// How far a bead goes with its velocity and force in a drift.
+struct Drift {
+  float kick;        ///< v' = v + kick f
+  float travel;      ///< r += travel v'
+  float prediction;  ///< predicted = v' + prediction f
+};
 
-DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
-  const float dt = static_cast<float>(parameters.time_step);
-  const float half_dt = 0.5f * dt;
-  const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
+DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift) {
   const StepKey key = step_key(parameters.seed, step, Stream::pair);
   const Planes planes = planes_of(parameters.domain);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
@@ -61,16 +63,17 @@ DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step
     Record& p = beads.position[i];
     Record& v = beads.velocity[i];
     const Record& f = beads.force[i];
-    float half[3] = {v.x + half_dt * f.x, v.y + half_dt * f.y, v.z + half_dt * f.z};
-    float seen[3] = {half[0] + prediction * f.x, half[1] + prediction * f.y, half[2] + prediction * f.z};
-    const float way[3] = {dt * half[0], dt * half[1], dt * half[2]};
+    float kicked[3] = {v.x + drift.kick * f.x, v.y + drift.kick * f.y, v.z + drift.kick * f.z};
+    float seen[3] = {kicked[0] + drift.prediction * f.x, kicked[1] + drift.prediction * f.y,
+                     kicked[2] + drift.prediction * f.z};
+    const float way[3] = {drift.travel * kicked[0], drift.travel * kicked[1], drift.travel * kicked[2]};
     float at[3] = {p.x + way[0], p.y + way[1], p.z + way[2]};
     if (outside(planes, at)) {
       const float from[3] = {p.x, p.y, p.z};
       const float travelled = 2.f * fraction_to_plane(planes, from, way) - 1.f;
       for (int axis = 0; axis < 3; ++axis) {
         at[axis] = std::clamp(from[axis] + way[axis] * travelled, planes.lower[axis], planes.upper[axis]);
-        half[axis] = -half[axis];
+        kicked[axis] = -kicked[axis];
         seen[axis] = -seen[axis];
       }
     }
@@ -82,10 +85,18 @@ DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step
     const std::uint32_t bits = bead_key(key, beads.id[i]);
     p = {at[0], at[1], at[2], 0.f};
     std::memcpy(&p.w, &bits, sizeof bits);
-    v = {half[0], half[1], half[2], 0.f};
+    v = {kicked[0], kicked[1], kicked[2], 0.f};
     beads.predicted[i] = {seen[0], seen[1], seen[2], 0.f};
   }
   return {largest, wild};
+}
+
+}  // namespace
+
+DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+  const float dt = static_cast<float>(parameters.time_step);
+  const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
+  return move(beads, parameters, step, {0.5f * dt, dt, prediction});
 }
 
 void finish(Beads& beads, const Parameters& parameters) {
@@ -97,6 +108,16 @@ void finish(Beads& beads, const Parameters& parameters) {
     const Record& f = beads.force[i];
     v = {v.x + half_dt * f.x, v.y + half_dt * f.y, v.z + half_dt * f.z, 0.f};
   }
+}
+
+DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+  const float dt = static_cast<float>(parameters.time_step);
+  return move(beads, parameters, step, {dt, 0.5f * dt, 0.f});
+}
+
+DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+  const float dt = static_cast<float>(parameters.time_step);
+  return move(beads, parameters, step, {0.f, 0.5f * dt, 0.f});
 }
 
 }  // namespace dmf::engine

@@ -25,4 +25,16 @@ DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step
 /// Second half: v = v' + dt/2 f with the new forces.
 void finish(Beads& beads, const Parameters& parameters);
 
+/// BAOAB (Leimkuhler and Matthews 2013) with the two half kicks on both sides of a step's end taken together:
+///
+///   kick_and_half_drift   v += dt f,  r += dt/2 v     f: conservative forces only
+///   thermostat            friction and noise at the middle of the way (thermostat.h)
+///   half_drift            r += dt/2 v                 then new forces
+///
+/// So between two steps the velocities are those of the drift, half a kick behind the positions. That is what
+/// carries momentum and energy from place to place: the temperature and stress that it gives are right to
+/// higher order in dt than those of the velocity after a half kick. Bounce-back and noise keys as in drift().
+DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
+DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
+
 }  // namespace dmf::engine

@@ -23,11 +23,21 @@ HWY_INLINE Real density_weight(Real r, Real inverse_repulsion_radius) {
   return w * w;
 }
 
+/// Conservative part of mdpd_force, Lan (2.36): A w_c + B (rho_i + rho_j) w_d.
+template <class Real>
+HWY_INLINE Real conservative_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum) {
+  const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
+  const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
+  return w_c * attraction + law.repulsion * density_sum * w_d;
+}
+
 /// Force on bead i along e = (r_i - r_j)/r, for r < r_c. Lan (2.36) conservative, (2.5), (2.6) dissipative
 /// and random with s = 2:
 ///
 ///   A w_c + B (rho_i + rho_j) w_d  -  gamma w_c^2 (e . v_ij)  +  phi w_c zeta_ij / sqrt(dt)
 ///   w_c = 1 - r/r_c,   w_d = max(0, 1 - r/r_d),   A < 0 attracts, B > 0 repels
+///
+/// Friction and noise share the factor w_c with the attraction: they stand as additions to it.
 ///
 /// @param attraction    A_ij
 /// @param density_sum   rho_i + rho_j (walls count nothing and are not counted: rho_wall = 0)
@@ -37,10 +47,24 @@ template <class Real>
 HWY_INLINE Real mdpd_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum, Real approach,
                            Real zeta) {
   const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
-  const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
   const Real random = law.random_amplitude * zeta;
   const Real dissipative = law.friction * w_c * approach;
-  return w_c * (attraction + random - dissipative) + law.repulsion * density_sum * w_d;
+  return conservative_force(law, attraction + random - dissipative, r, density_sum);
+}
+
+/// One part of mdpd_force, or all of it. What a part does not use costs nothing: the compiler leaves it out.
+template <PairForce part, class Real>
+HWY_INLINE Real pair_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum, Real approach,
+                           Real zeta) {
+  const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
+  if constexpr (part == PairForce::conservative)
+    return conservative_force(law, attraction, r, density_sum);
+  else if constexpr (part == PairForce::random)
+    return w_c * (law.random_amplitude * zeta);
+  else if constexpr (part == PairForce::friction)
+    return w_c * (Real(0) - law.friction * w_c * approach);
+  else
+    return mdpd_force(law, attraction, r, density_sum, approach, zeta);
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE

@@ -5,6 +5,10 @@
 
 namespace dmf::engine {
 
+/// Which of the forces of a pair a pass computes. Groot and Warren's integrator takes them all at once, BAOAB
+/// each by itself.
+enum class PairForce { all, conservative, random, friction };
+
 /// Coefficients of the many-body DPD law between two species, reduced units, as the kernels use them.
 /// `Real` is double, float, or lanes. B must be the same for all pairs that share a density, otherwise the
 /// force has no potential (Warren 2013).

@@ -139,6 +139,7 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const 
     velocities.emplace_back(thermal(key, id, 0), thermal(key, id, 1), thermal(key, id, 2));
     mean += velocities.back() / static_cast<double>(sites.size());
   }
+  beads.reserve_more(sites.size());
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const Eigen::Vector3f at = sites[k].cast<float>(),
                           moving = (spread * (velocities[k] - mean)).cast<float>();

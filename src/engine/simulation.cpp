@@ -15,6 +15,7 @@
 #include "engine/observe/virial.h"
 #include "engine/pairs.h"
 #include "engine/placement.h"
+#include "engine/thermostat.h"
 #include "engine/walls/plane_wall.h"
 
 namespace dmf::engine {
@@ -78,6 +79,17 @@ struct Simulation::State {
         beads.id[report.wild_bead], p.x, p.y, p.z, v.x, v.y, v.z, largest_step, parameters.time_step));
   }
 
+  /// After every move: stops a run that jumped, sorts beads anew when cells may miss a pair.
+  void keep_pairs(const DriftReport& moved) {
+    require_sound_drift(moved);
+    if (!pairs.stale(moved.largest_displacement_squared)) return;
+    try {
+      pairs.rebuild(beads, wall);
+    } catch (const std::length_error& crowd) {
+      stop(fmt::format("{}: the liquid has collapsed; look at its attraction and repulsion", crowd.what()));
+    }
+  }
+
   void require_sound_temperature() {
     const double now = temperature();
     if (!(now <= runaway_factor * parameters.liquid.temperature))
@@ -117,15 +129,18 @@ void Simulation::step() {
   omp_set_num_threads(s.threads);
 
   // Voltages have become wettability in set_wettability(), between steps.
-  const DriftReport moved = drift(s.beads, s.parameters, s.step);
-  s.require_sound_drift(moved);
-
-  if (s.pairs.stale(moved.largest_displacement_squared)) s.pairs.rebuild(s.beads, s.wall);
-
-  s.forces.density(s.beads, s.wall, s.pairs);
-  s.forces.force(s.beads, s.wall, s.pairs);
-
-  finish(s.beads, s.parameters);
+  if (s.parameters.integrator == Integrator::groot_warren) {
+    s.keep_pairs(drift(s.beads, s.parameters, s.step));
+    s.forces.density(s.beads, s.wall, s.pairs);
+    s.forces.force(s.beads, s.wall, s.pairs);
+    finish(s.beads, s.parameters);
+  } else {
+    s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step));
+    thermostat(s.beads, s.wall, s.pairs, s.forces, s.parameters);
+    s.keep_pairs(half_drift(s.beads, s.parameters, s.step));
+    s.forces.density(s.beads, s.wall, s.pairs);
+    s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.pairs);
+  }
   ++s.step;
 
   if (s.step % s.parameters.observe_interval == 0) {

@@ -14,13 +14,17 @@ int main(int argc, char** argv) {
       {"contact_angle", study_contact_angle},
       {"commanded_angle", study_commanded_angle},
       {"liquid", study_liquid},
-      {"crossing", study_crossing}};
+      {"crossing", study_crossing},
+      {"time_step", study_time_step}};
+  const std::map<std::string, dmf::engine::Integrator> integrators{
+      {"groot_warren", dmf::engine::Integrator::groot_warren}, {"baoab", dmf::engine::Integrator::baoab}};
   CLI::App app(
       "Studies of dmf_sim.\n"
       "  contact_angle    wall attraction -> contact angle; writes calibration.yaml\n"
       "  commanded_angle  commanded against shown angle, through the calibration\n"
       "  liquid           temperature, density, surface tension, viscosity\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
+      "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "A study that was stopped goes on where it was: finished runs stand in its CSV files.");
   std::string name;
   StudyOptions options;
@@ -36,6 +40,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lambda", options.lambda, "of the integrator (default: the engine's)")
       ->check(CLI::Range(0.5, 1.0));
+  app.add_option("--integrator", options.integrator, "groot_warren or baoab")
+      ->transform(CLI::CheckedTransformer(integrators));
+  app.add_option("--skin", options.list_skin, "of the neighbour list, r_c")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
   app.add_option("--calibration", options.calibration, "name, file, or lan2016")->capture_default_str();
   app.add_option("--scene", options.scene, "for crossing")->capture_default_str();
   app.add_option("--out", options.output, "folder for CSV files")->capture_default_str();

@@ -1,5 +1,6 @@
 #include "tools/liquid.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -24,11 +25,17 @@ Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
       parameters.domain.upper_side = {Side::periodic, Side::periodic, Side::periodic};
   parameters.time_step = how.time_step;
   if (how.lambda > 0) parameters.integrator_lambda = how.lambda;
+  parameters.integrator = how.integrator;
+  parameters.list_skin = how.list_skin;
   parameters.seed = how.seed;
   return parameters;
 }
 
 engine::ContactAngleCurve no_wall() { return engine::ContactAngleCurve::lan2016(); }
+
+double measuring_time(const LiquidRun& how, double usual, double quick) {
+  return how.measure > 0 ? how.measure : how.quick ? quick : usual;
+}
 
 /// Steps for `settle` tau, then calls look() every `interval` tau for `measure` tau.
 template <class Look>
@@ -50,7 +57,7 @@ FilmResult run_film(const LiquidRun& how) {
   Simulation simulation(periodic_box(how, {width, width, height}), no_wall(), {1, "auto"});
   simulation.fill_slab({0, 0, 6}, {width, width, 6 + thickness});
   double tension = 0, density = 0, normal_stress = 0, looks = 0, beads = 0;
-  run(simulation, how.quick ? 10 : 50, how.quick ? 20 : 300, 0.2, [&] {
+  run(simulation, how.quick ? 10 : 50, measuring_time(how, 300, 20), 0.2, [&] {
     const auto snapshot = simulation.observe({true, false, true});
     Eigen::Matrix3d stress = *snapshot->virial;
     double middle = 0;
@@ -77,7 +84,7 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
   double pressure = 0, density = 0, looks = 0, beads = 0, temperature = 0;
   const double inner = radius - 2.5, volume = 4.0 / 3 * pi * inner * inner * inner;
   Vector3d momentum = Vector3d::Zero();
-  run(simulation, how.quick ? 10 : 50, how.quick ? 20 : 300, 0.2, [&] {
+  run(simulation, how.quick ? 10 : 50, measuring_time(how, 300, 20), 0.2, [&] {
     const auto snapshot = simulation.observe({true, false, true});
     if (snapshot->droplets.empty()) return;
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
@@ -100,14 +107,16 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
 
 BulkResult run_bulk(const LiquidRun& how) {
   // A whole number of lattice cells at the liquid's own density.
-  const double size = 14 * std::cbrt(4 / Parameters{}.liquid.bulk_density), interval = 0.1;
+  const double size = 14 * std::cbrt(4 / Parameters{}.liquid.bulk_density);
+  // A whole number of steps, about 0.1 tau.
+  const double interval = how.time_step * std::max(1.0, std::round(0.1 / how.time_step));
   Parameters parameters = periodic_box(how, Vector3d::Constant(size));
   Simulation simulation(parameters, no_wall(), {1, "auto"});
   const double density = static_cast<double>(simulation.fill_box()) / (size * size * size);
   constexpr int modes = 12;  // 3 wave vectors, 2 transverse directions, sine and cosine
   std::vector<std::array<double, modes>> history;
   double temperature = 0, pressure = 0;
-  run(simulation, how.quick ? 5 : 30, how.quick ? 30 : 400, interval, [&] {
+  run(simulation, how.quick ? 5 : 30, measuring_time(how, 400, 30), interval, [&] {
     const auto snapshot = simulation.observe({true, false, true});
     std::array<double, modes> wave{};
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k)

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/parameters.h"
+
 namespace dmf::tools {
 
 /// How to measure the default liquid. Single-threaded; reduced units throughout.
@@ -9,6 +11,9 @@ struct LiquidRun {
   double time_step = 0.01;  ///< tau
   double lambda = 0;        ///< of the integrator; 0: the engine's default
   bool quick = false;       ///< 20 to 30 tau instead of 300 to 400
+  engine::Integrator integrator = engine::Integrator::groot_warren;
+  double list_skin = 0.2;  ///< r_c
+  double measure = 0;      ///< tau of measuring; 0: as long as `quick` says
 };
 
 struct FilmResult {

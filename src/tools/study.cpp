@@ -26,6 +26,10 @@ MeanAndSpread mean_and_spread(const std::vector<double>& values) {
   return result;
 }
 
+std::string integrator_key(engine::Integrator integrator) {
+  return integrator == engine::Integrator::baoab ? " baoab" : "";
+}
+
 ResultTable::ResultTable(const std::string& file, std::vector<std::string> columns) : file_(file) {
   const std::string header = fmt::format("run,{}", fmt::join(columns, ","));
   if (const auto folder = std::filesystem::path(file).parent_path(); !folder.empty())

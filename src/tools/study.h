@@ -6,16 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "engine/parameters.h"
+
 namespace dmf::tools {
 
 /// What every study is told on the command line.
 struct StudyOptions {
-  int seeds = 3;                           ///< 1 .. seeds
-  int jobs = 1;                            ///< runs at a time, each on one thread
-  bool quick = false;                      ///< a short form: shows that it works, not what the number is
-  double radius = 0;                       ///< of the droplet, r_c; 0: the study's own
-  double time_step = 0.01;                 ///< tau
-  double lambda = 0;                       ///< of the integrator; 0: the engine's default
+  int seeds = 3;            ///< 1 .. seeds
+  int jobs = 1;             ///< runs at a time, each on one thread
+  bool quick = false;       ///< a short form: shows that it works, not what the number is
+  double radius = 0;        ///< of the droplet, r_c; 0: the study's own
+  double time_step = 0.01;  ///< tau
+  double lambda = 0;        ///< of the integrator; 0: the engine's default
+  engine::Integrator integrator = engine::Integrator::groot_warren;
+  double list_skin = 0.2;                  ///< r_c
   std::string calibration = "water_like";  ///< name in config/calibration, a file, or "lan2016"
   std::string scene = "gradient_R5";       ///< crossing: which
   std::string output = ".";                ///< folder for CSV files and results
@@ -28,6 +32,9 @@ struct MeanAndSpread {
   double standard_error = 0;  ///< deviation / sqrt(n)
 };
 MeanAndSpread mean_and_spread(const std::vector<double>& values);
+
+/// What a run's key says of its integrator: " baoab", or nothing for the default.
+std::string integrator_key(engine::Integrator integrator);
 
 /// Results of runs, one a line in a CSV file, written as soon as they are there: a study that was killed goes
 /// on where it was. A run is known by its key, such as "A=-15 R=10 seed=2". Thread-safe.
@@ -65,5 +72,7 @@ void study_commanded_angle(
 void study_liquid(const StudyOptions& options);  ///< temperature, density, surface tension twice, viscosity
 void study_crossing(
     const StudyOptions& options);  ///< a droplet on a wettability gradient: time against Lan's
+void study_time_step(
+    const StudyOptions& options);  ///< what each integrator does to every observable as the step grows
 
 }  // namespace dmf::tools

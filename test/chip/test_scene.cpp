@@ -117,6 +117,12 @@ TEST(Scene, EverythingWrongIsToldAtOnceWithFileAndLine) {
   EXPECT_TRUE(holds(text, "bad.yaml:12: patterns.p[0].load_pattern: unknown key"));
 }
 
+TEST(Scene, ChoosesTheIntegrator) {
+  EXPECT_EQ(parse("").parameters.integrator, engine::Integrator::groot_warren);
+  EXPECT_EQ(parse("integrator: baoab\n").parameters.integrator, engine::Integrator::baoab);
+  EXPECT_TRUE(holds(refused("integrator: euler\n"), "integrator: euler, allowed: groot_warren, baoab"));
+}
+
 TEST(Scene, CommandsAreHeldToWhatTheChipCanDo) {
   const std::string text = refused(
       "schedule:\n"

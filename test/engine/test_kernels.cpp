@@ -17,7 +17,7 @@ namespace {
 
 struct Exact {
   std::vector<double> density, density_scale;
-  std::vector<Vector3d> force;
+  std::vector<Vector3d> force, conservative, random, friction;
   std::vector<double>
       scale;  ///< sum of the absolute values of all contributions: what rounding is relative to
 };
@@ -52,7 +52,7 @@ Exact sum_over_all_pairs(const System& system, const PlaneWall& wall) {
     exact.density.push_back(density * density_normalization(r_d));
   }
   for (std::size_t i = 0; i < beads.size(); ++i) {
-    Vector3d total = Vector3d::Zero();
+    Vector3d total = Vector3d::Zero(), conservative = total, random = total, friction = total;
     double scale = 0;
     const auto add = [&](const Vector3d& d, double attraction, double density_sum, const Vector3d& parting,
                          double zeta) {
@@ -60,6 +60,10 @@ Exact sum_over_all_pairs(const System& system, const PlaneWall& wall) {
       if (r >= 1) return;
       const double approach = parting.dot(d) / r;
       total += HWY_NAMESPACE::mdpd_force(law, attraction, r, density_sum, approach, zeta) / r * d;
+      const double weight = 1 - r;
+      conservative += HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) / r * d;
+      random += law.random_amplitude * weight * zeta / r * d;
+      friction -= law.friction * weight * weight * approach / r * d;
       scale += std::abs(attraction) + law.repulsion * density_sum + std::abs(law.random_amplitude * zeta) +
                law.friction * std::abs(approach);
     };
@@ -74,9 +78,22 @@ Exact sum_over_all_pairs(const System& system, const PlaneWall& wall) {
           HWY_NAMESPACE::pair_noise<double>(bits(beads.position[i].w),
                                             HWY_NAMESPACE::wall_key(static_cast<std::uint32_t>(k))));
     exact.force.push_back(total);
+    exact.conservative.push_back(conservative);
+    exact.random.push_back(random);
+    exact.friction.push_back(friction);
     exact.scale.push_back(scale);
   }
   return exact;
+}
+
+/// Scatter stands for the rounding that AgreesWithTheSumOverAllPairs argues.
+void expect_close(const AlignedVector<Record>& computed, const std::vector<Vector3d>& exact,
+                  const std::vector<double>& scale, const char* what) {
+  ASSERT_EQ(computed.size(), exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    EXPECT_LT((Vector3d(computed[i].x, computed[i].y, computed[i].z) - exact[i]).norm(),
+              1e-5 * (1 + scale[i]))
+        << what << ", bead " << i;
 }
 
 class EveryKernel : public testing::TestWithParam<std::string> {};
@@ -101,6 +118,25 @@ TEST_P(EveryKernel, AgreesWithTheSumOverAllPairs) {
       EXPECT_LT((Vector3d(f.x, f.y, f.z) - exact.force[i]).norm(), 1e-5 * (1 + exact.scale[i]))
           << "bead " << i;
     }
+  }
+}
+
+TEST_P(EveryKernel, GivesEachPartOfTheForceByItself) {
+  for (System& system : all_systems()) {
+    SCOPED_TRACE(system.name);
+    const PlaneWall wall = wall_of(system);
+    Pairs pairs(system.parameters);
+    const Forces forces(system.parameters, GetParam());
+    pairs.rebuild(system.beads, wall);
+    forces.density(system.beads, wall, pairs);
+    const Exact exact = sum_over_all_pairs(system, wall);
+    AlignedVector<Record> to;
+    forces.force(PairForce::conservative, to, system.beads, wall, pairs);
+    expect_close(to, exact.conservative, exact.scale, "conservative");
+    forces.force(PairForce::random, to, system.beads, wall, pairs);
+    expect_close(to, exact.random, exact.scale, "random");
+    forces.force(PairForce::friction, to, system.beads, wall, pairs);
+    expect_close(to, exact.friction, exact.scale, "friction");
   }
 }
 

@@ -235,7 +235,7 @@ HWY_INLINE void add_force(ForceSum& total, std::size_t k, const Separation& d, L
   total.add(k, magnitude_over_r * d.x, magnitude_over_r * d.y, magnitude_over_r * d.z);
 }
 
-template <bool across_periodic>
+template <PairForce part, bool across_periodic>
 HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
                              const SlotsOfBeads& in_range, std::size_t count, ForceSum& total) {
   const Record& i = pass.position[bead];
@@ -252,12 +252,12 @@ HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, st
         (d.x * (Lanes(moving.x) - vx) + d.y * (Lanes(moving.y) - vy) + d.z * (Lanes(moving.z) - vz)) *
         inverse_r;
     const Lanes zeta = pair_noise<Lanes>(key_i, bits_of(key));
-    const Lanes force = mdpd_force(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
+    const Lanes force = pair_force<part>(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
     add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
   }
 }
 
-template <bool across_periodic>
+template <PairForce part, bool across_periodic>
 HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
                            const std::uint32_t* in_range, std::size_t count, ForceSum& total) {
   const Record& i = pass.position[bead];
@@ -272,7 +272,7 @@ HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std:
     const Lanes approach =
         (d.x * Lanes(moving.x) + d.y * Lanes(moving.y) + d.z * Lanes(moving.z)) * inverse_r;
     const Lanes zeta = pair_noise<Lanes>(key_i, wall_key(load_lanes(in_range + k)));
-    const Lanes force = mdpd_force(law, attraction, r, Lanes(moving.w), approach, zeta);
+    const Lanes force = pair_force<part>(law, attraction, r, Lanes(moving.w), approach, zeta);
     add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
   }
 }
@@ -289,7 +289,7 @@ HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32
   }
 }
 
-template <bool across_periodic>
+template <PairForce part, bool across_periodic>
 HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
                               const Packed& packed) {
   const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
@@ -305,29 +305,36 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
     ForceSum total;
     const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
                                 packed.bead_in_slot};
-    liquid_force<across_periodic>(pass, law, bead, in_range, block.in_range_count(bead), total);
+    liquid_force<part, across_periodic>(pass, law, bead, in_range, block.in_range_count(bead), total);
     if (wall_candidates > 0) {
       std::size_t no_distances = 0;
       const std::size_t count = sweep<false>(packed, wall_candidates, pass.position[bead], wall_ranges,
                                              packed.wall_in_range, nullptr, no_distances);
       // Whole lanes are loaded: what stands behind the last must name a bead.
       store_lanes(UnsignedLanes(0), packed.wall_in_range + count);
-      wall_force<across_periodic>(pass, wall_law, bead, packed.wall_in_range, count, total);
+      wall_force<part, across_periodic>(pass, wall_law, bead, packed.wall_in_range, count, total);
     }
     pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
   }
 }
 
+template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const Packed packed = Workbench::of_this_thread().room_for(block);
   for (const NeighbourCell& cell : block.cells)
     if (cell.across_periodic)
-      force_on_cell<true>(pass, block, cell, packed);
+      force_on_cell<part, true>(pass, block, cell, packed);
     else
-      force_on_cell<false>(pass, block, cell, packed);
+      force_on_cell<part, false>(pass, block, cell, packed);
 }
 
-Kernels table() { return {hwy::TargetName(HWY_TARGET), lane_count, &density, &force}; }
+Kernels table() {
+  return {hwy::TargetName(HWY_TARGET),
+          lane_count,
+          &density,
+          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
+           &force<PairForce::friction>}};
+}
 
 }  // namespace dmf::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

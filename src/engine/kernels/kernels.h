@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,8 +29,9 @@ struct PairPass {
 struct Kernels {
   const char* name;
   std::size_t lanes;
-  void (*density)(const PairPass&, NeighbourBlock&);      ///< rho of the block's beads, and who is in range
-  void (*force)(const PairPass&, const NeighbourBlock&);  ///< needs the density of all beads
+  void (*density)(const PairPass&, NeighbourBlock&);  ///< rho of the block's beads, and who is in range
+  /// By PairForce. `all` and `conservative` need the density of all beads.
+  std::array<void (*)(const PairPass&, const NeighbourBlock&), 4> force;
 };
 
 /// Names that this processor can run, best first.

@@ -11,7 +11,7 @@ namespace dmf::engine {
 namespace {
 
 using HWY_NAMESPACE::density_weight;
-using HWY_NAMESPACE::mdpd_force;
+using HWY_NAMESPACE::pair_force;
 using HWY_NAMESPACE::pair_noise;
 using HWY_NAMESPACE::wall_key;
 
@@ -63,6 +63,7 @@ void density(const PairPass& pass, NeighbourBlock& block) {
     }
 }
 
+template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
@@ -75,22 +76,23 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
     const double approach = d.dot(velocity_of(moving) - velocity_of(other_moving)) / r;
     const double zeta = pair_noise<double>(key_bits(i.w), key_bits(j.w));
     const double density_sum = double(moving.w) + other_moving.w;
-    total[bead - block.begin] += mdpd_force(law, law.attraction, r, density_sum, approach, zeta) / r * d;
+    total[bead - block.begin] +=
+        pair_force<part>(law, law.attraction, r, density_sum, approach, zeta) / r * d;
   });
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record &i = pass.position[bead], &moving = pass.predicted[bead];
       Vector3d& sum = total[bead - block.begin];
-      for_each_in_range(
-          pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
-          block.wall_runs.data() + cell.end_wall_run, i, 1.0 / wall_law.inverse_cutoff_radius,
-          [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-            const double r = std::max(d.norm(), 1e-6);
-            const double approach = d.dot(velocity_of(moving)) / r;
-            const double zeta = pair_noise<double>(key_bits(i.w), wall_key(other));
-            sum +=
-                mdpd_force(wall_law, double(pass.wall[other].w), r, double(moving.w), approach, zeta) / r * d;
-          });
+      for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
+                        block.wall_runs.data() + cell.end_wall_run, i, 1.0 / wall_law.inverse_cutoff_radius,
+                        [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+                          const double r = std::max(d.norm(), 1e-6);
+                          const double approach = d.dot(velocity_of(moving)) / r;
+                          const double zeta = pair_noise<double>(key_bits(i.w), wall_key(other));
+                          sum += pair_force<part>(wall_law, double(pass.wall[other].w), r, double(moving.w),
+                                                  approach, zeta) /
+                                 r * d;
+                        });
       pass.force[bead] = {static_cast<float>(sum.x()), static_cast<float>(sum.y()),
                           static_cast<float>(sum.z()), 0};
     }
@@ -98,6 +100,12 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
 
 }  // namespace
 
-Kernels reference_kernels() { return {"reference", 1, &density, &force}; }
+Kernels reference_kernels() {
+  return {"reference",
+          1,
+          &density,
+          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
+           &force<PairForce::friction>}};
+}
 
 }  // namespace dmf::engine

@@ -24,6 +24,8 @@ SessileRun sessile_run(const StudyOptions& options, double attraction, double st
   run.settle = options.quick ? 40 : 120;
   run.measure = options.quick ? 40 : 160;
   run.parameters.time_step = options.time_step;
+  run.parameters.integrator = options.integrator;
+  run.parameters.list_skin = options.list_skin;
   if (options.lambda > 0) run.parameters.integrator_lambda = options.lambda;
   return run;
 }
@@ -44,7 +46,8 @@ void study_contact_angle(const StudyOptions& options) {
   ResultTable table(options.output + "/contact_angle_runs.csv", columns);
   const auto key = [&](double attraction, int seed) {
     const SessileRun run = sessile_run(options, attraction, 90, seed);
-    return fmt::format("A={} R={} dt={} lambda={} seed={}", attraction, run.radius, run.parameters.time_step,
+    return fmt::format("A={} R={} dt={}{} lambda={} seed={}", attraction, run.radius,
+                       run.parameters.time_step, integrator_key(options.integrator),
                        run.parameters.integrator_lambda, seed);
   };
   std::vector<Job> jobs;
@@ -94,8 +97,9 @@ void study_commanded_angle(const StudyOptions& options) {
       options.quick ? std::vector<double>{70, 130} : std::vector<double>{50, 70, 90, 110, 130, 145};
   ResultTable table(options.output + "/commanded_angle_runs.csv", columns);
   const auto key = [&](double angle, int seed) {
-    return fmt::format("commanded={} A={:.6f} R={} dt={} seed={}", angle, curve.attraction(angle),
-                       options.radius > 0 ? options.radius : 10, options.time_step, seed);
+    return fmt::format("commanded={} A={:.6f} R={} dt={}{} seed={}", angle, curve.attraction(angle),
+                       options.radius > 0 ? options.radius : 10, options.time_step,
+                       integrator_key(options.integrator), seed);
   };
   std::vector<Job> jobs;
   // Seeds that the calibration has not seen.

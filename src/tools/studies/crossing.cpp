@@ -9,11 +9,14 @@ namespace dmf::tools {
 void study_crossing(const StudyOptions& options) {
   chip::Scene scene = chip::load_scene(options.scene);
   scene.parameters.time_step = options.time_step;
+  scene.parameters.integrator = options.integrator;
+  scene.parameters.list_skin = options.list_skin;
   if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
   ResultTable table(options.output + "/crossing_runs.csv",
                     {"to_-30", "to_-20", "to_0", "to_30", "to_40", "ns_per_bead_step"});
   const auto key = [&](int seed) {
-    return fmt::format("{} dt={} seed={}", scene.name, options.time_step, seed);
+    return fmt::format("{} dt={}{} seed={}", scene.name, options.time_step,
+                       integrator_key(options.integrator), seed);
   };
   std::vector<Job> jobs;
   for (int seed = 1; seed <= options.seeds; ++seed)

@@ -15,10 +15,16 @@ void study_liquid(const StudyOptions& options) {
   ResultTable bulks(options.output + "/liquid_bulk_runs.csv",
                     {"density", "temperature", "pressure", "viscosity"});
   const auto how = [options](int seed) {
-    return LiquidRun{static_cast<std::uint64_t>(seed), options.time_step, options.lambda, options.quick};
+    return LiquidRun{static_cast<std::uint64_t>(seed),
+                     options.time_step,
+                     options.lambda,
+                     options.quick,
+                     options.integrator,
+                     options.list_skin};
   };
   const auto key = [&](const char* what, int seed) {
-    return fmt::format("{} dt={} lambda={} seed={}", what, options.time_step,
+    return fmt::format("{} dt={}{} lambda={} seed={}", what, options.time_step,
+                       integrator_key(options.integrator),
                        options.lambda > 0 ? options.lambda : engine::Parameters{}.integrator_lambda, seed);
   };
   const std::string droplet = fmt::format("droplet R={}", radius);
