@@ -76,6 +76,7 @@ void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const Plane
   std::uint32_t most = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    blocks_[b].runs.reserve(10 * blocks_[b].cells.size());  // nine rows, and some in two pieces
     for (NeighbourCell& cell : blocks_[b].cells) find_runs(blocks_[b], cell, listed, wall);
     most = std::max({most, blocks_[b].slots, blocks_[b].wall_slots});
   }

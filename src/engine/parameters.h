@@ -79,7 +79,7 @@ struct Parameters {
   double integrator_lambda = 0.55;  ///< of groot_warren; [0.5, 1]. Their 0.65 leaves this liquid 2 % cold
   double list_skin = 0.25;          ///< cells are wider than r_c by this: a matter of speed, r_c; [0.05, 1]
   std::uint64_t seed = 1;           ///< of all randomness
-  std::uint32_t observe_interval = 20;  ///< steps between two looks of the droplet tracker; [1, 100000]
+  std::uint32_t observe_interval = 50;  ///< steps between two looks of the droplet tracker; [1, 100000]
   double angle_window = 20.0;           ///< memory of the running contact angle measurement, tau; [0, 1e4]
   std::uint64_t max_beads = 4'000'000;  ///< moving beads a run may hold; [1, 100e6]
 };

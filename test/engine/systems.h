@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -126,6 +127,16 @@ inline std::vector<System> all_systems() {
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));
   return systems;
+}
+
+/// Kernels load whole registers, past the last bead too: what they find there must not matter.
+inline void poison_behind(Beads& beads) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (AlignedVector<Record>* array : {&beads.position, &beads.predicted}) {
+    const std::size_t count = array->size();
+    array->resize(count + 16, {nan, nan, nan, nan});
+    array->resize(count);
+  }
 }
 
 /// A wall with a gradient, so that every wall bead is its own.

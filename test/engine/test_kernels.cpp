@@ -105,6 +105,7 @@ TEST_P(EveryKernel, AgreesWithTheSumOverAllPairs) {
     Pairs pairs(system.parameters);
     const Forces forces(system.parameters, GetParam());
     pairs.rebuild(system.beads, wall);
+    poison_behind(system.beads);
     forces.density(system.beads, wall, pairs);
     forces.force(system.beads, wall, pairs);
     const Exact exact = sum_over_all_pairs(system, wall);
@@ -128,6 +129,7 @@ TEST_P(EveryKernel, GivesEachPartOfTheForceByItself) {
     Pairs pairs(system.parameters);
     const Forces forces(system.parameters, GetParam());
     pairs.rebuild(system.beads, wall);
+    poison_behind(system.beads);
     forces.density(system.beads, wall, pairs);
     const Exact exact = sum_over_all_pairs(system, wall);
     AlignedVector<Record> to;
@@ -148,6 +150,7 @@ TEST_P(EveryKernel, ConservesMomentumAmongLiquidBeads) {
     Pairs pairs(system.parameters);
     const Forces forces(system.parameters, GetParam());
     pairs.rebuild(system.beads, wall);
+    poison_behind(system.beads);
     forces.density(system.beads, wall, pairs);
     forces.force(system.beads, wall, pairs);
     Vector3d total = Vector3d::Zero();

@@ -152,13 +152,13 @@ HWY_INLINE Ranges ranges_of(const MdpdLaw<double>& law) {
 
 // ---- density ----
 
-/// Room for `count` more entries after `used` and for what whole lanes write past them. Grows by an eighth: a
-/// block's count hardly changes.
+/// Room for `count` more entries after `used` and for what whole lanes write past them. Grows by a
+/// sixteenth: a block's count hardly changes.
 HWY_INLINE void make_room(std::vector<std::uint16_t>& entries, std::size_t used, std::size_t count) {
   const std::size_t needed = used + count + 2 * lane_count;
   if (entries.size() >= needed) return;
-  entries.reserve(needed + needed / 8);
-  entries.resize(needed + needed / 8);
+  entries.reserve(needed + needed / 16);
+  entries.resize(needed + needed / 16);
 }
 
 HWY_INLINE float density_from(const float* squared_distances, std::size_t count,
@@ -277,7 +277,8 @@ HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std:
   }
 }
 
-/// Writes the index of the bead in each slot.
+/// Writes the index of the bead in each slot. Behind the last slot stands a bead that exists: whole lanes are
+/// loaded there, and a lane that does not count must still hold finite numbers, for it is multiplied by zero.
 HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32_t* bead_in_slot) {
   for (; run != end; ++run) {
     UnsignedLanes index = UnsignedLanes(run->begin) + lane_numbers();
@@ -287,6 +288,7 @@ HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32
     }
     bead_in_slot += run->end - run->begin;
   }
+  store_lanes(UnsignedLanes(0), bead_in_slot);
 }
 
 template <PairForce part, bool across_periodic>
