@@ -15,9 +15,9 @@ constexpr double water_density = 998.2, water_viscosity = 1.002e-3, water_tensio
 constexpr double thermal_energy = 4.047e-21;
 /// Droplet speed that the dimensionless numbers are quoted at, r_c/tau: what the shipped scenes show.
 constexpr double typical_speed = 0.05;
-/// Memory of a moving bead with its neighbour lists and of a wall bead, bytes: measured, see
+/// Memory of a moving bead with all that goes with it and of a wall bead, bytes: measured, see
 /// docs/performance.md.
-constexpr double bytes_per_moving_bead = 720, bytes_per_wall_bead = 30;
+constexpr double bytes_per_moving_bead = 180, bytes_per_wall_bead = 30;
 
 std::string line(const char* name, double ours, double water) {
   return fmt::format("  {:<46} {:>11.3g} {:>11.3g} {:>10.3g}\n", name, ours, water, ours / water);
