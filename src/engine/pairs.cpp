@@ -68,6 +68,8 @@ void Pairs::restore(const Beads& beads, const PlaneWall& wall) {
   // `listed` is sorted already; sorting it again is the identity, and gives the grid back.
   lay_grid(beads.listed);
   grid_.sort(beads.listed.data(), beads.size(), order_);
+  if (!std::is_sorted(order_.begin(), order_.end()))
+    throw InvalidInput("saved state: its beads are sorted into other cells than these parameters make");
   find_neighbourhoods(beads.listed, wall);
 }
 

@@ -30,6 +30,7 @@ class Pairs {
   void rebuild(Beads& beads, const PlaneWall& wall);
 
   /// Finds the cells again from `beads.listed`, in the present order: restores a saved state to the bit.
+  /// @throws InvalidInput when that is not the order of these cells.
   void restore(const Beads& beads, const PlaneWall& wall);
 
   std::vector<NeighbourBlock>& blocks() { return blocks_; }

@@ -99,9 +99,11 @@ struct Simulation::State {
   }
 
   void archive(Archive& archive) {
-    std::uint64_t format = 1;
+    constexpr std::uint64_t current = 2;  // 1: beads in the order of neighbour lists
+    std::uint64_t format = current;
     archive(format);
-    if (format != 1) throw InvalidInput(fmt::format("saved state: format {}, allowed: 1", format));
+    if (format != current)
+      throw InvalidInput(fmt::format("saved state: format {}, allowed: {}", format, current));
     archive(step);
     archive(next_bead_id);
     for (AlignedVector<Record>* array :

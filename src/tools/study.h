@@ -19,7 +19,7 @@ struct StudyOptions {
   double time_step = 0.01;  ///< tau
   double lambda = 0;        ///< of the integrator; 0: the engine's default
   engine::Integrator integrator = engine::Integrator::groot_warren;
-  double list_skin = 0.2;                  ///< r_c
+  double list_skin = 0.25;                 ///< r_c
   std::string calibration = "water_like";  ///< name in config/calibration, a file, or "lan2016"
   std::string scene = "gradient_R5";       ///< crossing: which
   std::string output = ".";                ///< folder for CSV files and results

@@ -41,6 +41,18 @@ TEST(Run, RefusesABrokenSavedStateAndStaysAsItWas) {
   EXPECT_EQ(*simulation.observe({false, true})->state_hash, before);
 }
 
+TEST(Run, RefusesAStateSortedIntoOtherCells) {
+  Parameters parameters = plate(16, 14);
+  Simulation saved(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  start_droplet(saved);
+  parameters.list_skin = 0.4;
+  Simulation other(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  start_droplet(other);
+  const std::uint64_t before = hash_after(other, 0);
+  EXPECT_THROW(other.load_state(saved.save_state()), InvalidInput);
+  EXPECT_EQ(hash_after(other, 0), before);
+}
+
 TEST(Run, ScalarReferenceAndLanesAgreeUntilChaosParts) {
   // Rounding differs; a dozen steps amplify it little.
   Simulation lanes = droplet_on_wall(1, "auto"), reference = droplet_on_wall(1, "reference");
