@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
-#include <map>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -28,6 +28,17 @@ class Archive {
   void operator()(T& value) {
     static_assert(std::is_trivially_copyable<T>::value, "say how to archive this type");
     raw(&value, sizeof value);
+  }
+  void operator()(Vector3d& vector) {
+    for (int axis = 0; axis < 3; ++axis) (*this)(vector[axis]);
+  }
+  template <class T>
+  void operator()(std::optional<T>& value) {
+    bool present = value.has_value();
+    T held = value.value_or(T{});
+    (*this)(present);
+    (*this)(held);
+    value = present ? std::optional<T>(held) : std::nullopt;
   }
   template <class T, class Allocator>
   void operator()(std::vector<T, Allocator>& values) {

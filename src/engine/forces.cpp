@@ -1,5 +1,6 @@
 #include "engine/forces.h"
 
+#include "engine/bodies/smooth_sphere.h"
 #include "engine/kernels/reference.h"
 #include "engine/simulation.h"
 
@@ -16,6 +17,8 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
       kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
       constants_{} {
   constants_.laws = pair_table(parameters);
+  constants_.bodies.count_liquid = parameters.microparticles.counts_liquid;
+  constants_.bodies.counted_by_liquid = parameters.microparticles.counted_by_liquid;
   constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
   for (int axis = 0; axis < 3; ++axis) {
     if (!parameters.domain.periodic(axis)) continue;
@@ -25,30 +28,44 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   constants_.images = PeriodicImages(constants_.period);
 }
 
-PairPass Forces::pass_over(Beads& beads, const PlaneWall& wall) const {
+PairPass Forces::pass_over(Beads& beads, const PlaneWall& wall, Microparticles& bodies) const {
   PairPass pass = constants_;
   pass.position = beads.position.data();
   pass.predicted = beads.predicted.data();
   pass.force = beads.force.data();
   pass.wall = wall.beads().data();
+  pass.bodies.position = bodies.beads().position.data();
+  pass.bodies.moving = bodies.beads().moving.data();
+  pass.bodies.own_density = bodies.beads().own_density.data();
+  pass.bodies.liquid_force = bodies.beads().liquid_force.data();
+  pass.bodies.wall_force = bodies.beads().wall_force.data();
   return pass;
 }
 
-void Forces::density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
-  const PairPass pass = pass_over(beads, wall);
+void Forces::density(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs) const {
+  const PairPass pass = pass_over(beads, wall, bodies);
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks.size(); ++b) kernels_.density(pass, blocks[b]);
+  const std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
+#pragma omp parallel for schedule(dynamic, 1) if (!of_bodies.empty())
+  for (std::size_t b = 0; b < of_bodies.size(); ++b) kernels_.body_density(pass, of_bodies[b]);
+  add_smooth_densities(pass, bodies, pairs);
 }
 
-void Forces::force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const {
-  force(PairForce::all, beads.force, beads, wall, pairs);
+void Forces::force(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs) const {
+  force(PairForce::all, beads.force, beads, wall, bodies, pairs);
+  const PairPass pass = pass_over(beads, wall, bodies);
+  const std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
+#pragma omp parallel for schedule(dynamic, 1) if (!of_bodies.empty())
+  for (std::size_t b = 0; b < of_bodies.size(); ++b) kernels_.body_force(pass, of_bodies[b]);
+  add_smooth_forces(pass, bodies, pairs);
 }
 
 void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const PlaneWall& wall,
-                   Pairs& pairs) const {
+                   Microparticles& bodies, Pairs& pairs) const {
   to.resize(beads.size());
-  PairPass pass = pass_over(beads, wall);
+  PairPass pass = pass_over(beads, wall, bodies);
   pass.force = to.data();
   const std::vector<NeighbourBlock>& blocks = pairs.blocks();
   const auto kernel = kernels_.force[static_cast<std::size_t>(part)];

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "engine/beads.h"
+#include "engine/bodies/microparticles.h"
 #include "engine/kernels/kernels.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
@@ -17,19 +18,19 @@ class Forces {
   Forces(const Parameters& parameters, const std::string& kernel);
 
   /// rho of every bead, and who is in range now.
-  void density(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
+  void density(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs) const;
   /// Forces of every bead; needs density().
-  void force(Beads& beads, const PlaneWall& wall, Pairs& pairs) const;
-  /// One part of them: `to` gets the sums. Random forces need who is in range (density()) and keys, friction
-  /// besides the velocities in `beads.predicted`.
+  void force(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs) const;
+  /// One part of the liquid's: `to` gets the sums. Random forces need who is in range (density()) and keys,
+  /// friction besides the velocities in `beads.predicted`.
   void force(PairForce part, AlignedVector<Record>& to, Beads& beads, const PlaneWall& wall,
-             Pairs& pairs) const;
+             Microparticles& bodies, Pairs& pairs) const;
 
   const Kernels& kernels() const { return kernels_; }
   const std::string& kernel_name() const { return kernel_name_; }
 
  private:
-  PairPass pass_over(Beads& beads, const PlaneWall& wall) const;
+  PairPass pass_over(Beads& beads, const PlaneWall& wall, Microparticles& bodies) const;
 
   Kernels kernels_;
   std::string kernel_name_;

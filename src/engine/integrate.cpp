@@ -99,6 +99,16 @@ DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step
   return move(beads, parameters, step, {0.5f * dt, dt, prediction});
 }
 
+void add_gravity(Beads& beads, const Vector3d& gravity) {
+  const Eigen::Vector3f pull = gravity.cast<float>();
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Record& f = beads.force[i];
+    f = {f.x + pull.x(), f.y + pull.y(), f.z + pull.z(), 0.f};
+  }
+}
+
 void finish(Beads& beads, const Parameters& parameters) {
   const float half_dt = 0.5f * static_cast<float>(parameters.time_step);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());

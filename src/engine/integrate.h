@@ -22,6 +22,9 @@ constexpr float largest_step = 0.5f;
 /// velocity (bounce-back: no slip on average). Sets the beads' noise keys for `step`.
 DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
 
+/// Adds gravity, r_c / tau^2, to the forces.
+void add_gravity(Beads& beads, const Vector3d& gravity);
+
 /// Second half: v = v' + dt/2 f with the new forces.
 void finish(Beads& beads, const Parameters& parameters);
 

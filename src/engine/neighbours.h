@@ -13,7 +13,8 @@ struct NeighbourCell {
   std::uint32_t begin, end;          ///< beads of the cell
   std::uint32_t first_run, end_run;  ///< liquid, into NeighbourBlock::runs
   std::uint32_t first_wall_run, end_wall_run;
-  bool across_periodic;  ///< some run is an image from beyond a periodic side
+  std::uint32_t first_body_run, end_body_run;  ///< beads of microparticles
+  bool across_periodic;                        ///< some run is an image from beyond a periodic side
 };
 
 /// Some hundred consecutive beads in whole cells: the unit of work of a thread.
@@ -21,9 +22,9 @@ struct NeighbourBlock {
   static constexpr std::uint32_t most_slots = 65536;  ///< that 16 bits can number
 
   std::uint32_t begin = 0, end = 0;
-  std::uint32_t slots = 0, wall_slots = 0;  ///< most of any cell
-  std::vector<NeighbourCell> cells;         ///< those with beads
-  std::vector<BeadRun> runs, wall_runs;
+  std::uint32_t slots = 0, wall_slots = 0, body_slots = 0;  ///< most of any cell
+  std::vector<NeighbourCell> cells;                         ///< those with beads
+  std::vector<BeadRun> runs, wall_runs, body_runs;
 
   /// Who is in range (r_c) in this step, found by the density pass: slots of bead `begin + k` stand from
   /// in_range_begin[k] to in_range_begin[k + 1]. Full: a pair stands in the rows of both its beads.

@@ -39,6 +39,12 @@ HWY_INLINE Unsigned wall_key(Unsigned index) {
   return index * Unsigned(0x9e3779b9u) + Unsigned(0x7f4a7c15u);
 }
 
+/// Fixed key of a bead of a microparticle: as if wall beads were numbered on, from 2^31.
+template <class Unsigned>
+HWY_INLINE Unsigned body_key(Unsigned index) {
+  return wall_key(index + Unsigned(0x80000000u));
+}
+
 }  // namespace dmf::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

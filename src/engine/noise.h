@@ -10,9 +10,10 @@ namespace dmf::engine {
 /// | ---------- | ------------------------------------------- | ----------------------------------- |
 /// | pair       | zeta_ij of the random force, liquid-liquid  | both bead ids, symmetric            |
 /// | wall       | zeta_ij of the random force, liquid-wall    | bead id, wall bead index            |
+/// | body       | zeta_ij of the random force, liquid-body     | bead id, index of the body's bead   |
 /// | velocity   | thermal velocities of a newly placed bead   | bead id, component                  |
 ///
-/// A wall pair mixes the liquid bead's key of the pair stream with a fixed key of the wall bead.
+/// A wall or body pair mixes the liquid bead's key of the pair stream with a fixed key of the other bead.
 /// The pair stream costs one hash a bead and step (`bead_key`) plus one hash a pair (`mix` in noise-inl.h).
 enum class Stream : std::uint32_t { pair = 1, velocity = 2 };
 

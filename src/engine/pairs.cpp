@@ -13,11 +13,45 @@ namespace {
 /// Fewest beads a block: few enough to balance threads, many enough to amortise its arrays.
 constexpr std::uint32_t block_size = 256;
 
+/// A box around beads. What it holds does not depend on the order in which they came.
+struct Bounds {
+  Eigen::Vector3f lower = Eigen::Vector3f::Constant(1e30f), upper = -lower;
+
+  void include(const Record& bead) {
+    const Eigen::Vector3f at(bead.x, bead.y, bead.z);
+    lower = lower.cwiseMin(at);
+    upper = upper.cwiseMax(at);
+  }
+  void include(const Bounds& other) {
+    lower = lower.cwiseMin(other.lower);
+    upper = upper.cwiseMax(other.upper);
+  }
+};
+
+Bounds bounds_of(const AlignedVector<Record>& beads, std::uint32_t begin, std::uint32_t end) {
+  Bounds bounds;
+  for (std::uint32_t i = begin; i < end; ++i) bounds.include(beads[i]);
+  return bounds;
+}
+
+/// Throws when more beads are around a cell than slots can number.
+void require_slots(std::uint32_t most) {
+  if (most > NeighbourBlock::most_slots)
+    throw std::length_error(fmt::format("{} beads around one cell, allowed: {}", most,
+                                        std::uint32_t{NeighbourBlock::most_slots}));
+}
+
 float wrapped(float position, double lower, double period) {
   return static_cast<float>(position - period * std::floor((position - lower) / period));
 }
 
 }  // namespace
+
+/// Consecutive beads of a microparticle, and where they were when the liquid was sorted.
+struct BodyPatch {
+  std::uint32_t begin, end;
+  Bounds bounds;
+};
 
 Pairs::Pairs(const Parameters& parameters)
     : domain_(parameters.domain),
@@ -25,26 +59,19 @@ Pairs::Pairs(const Parameters& parameters)
       squared_half_skin_(static_cast<float>(0.25 * parameters.list_skin * parameters.list_skin)) {}
 
 void Pairs::lay_grid(const AlignedVector<Record>& positions) {
-  float lower_x = 1e30f, lower_y = 1e30f, lower_z = 1e30f, upper_x = -1e30f, upper_y = -1e30f,
-        upper_z = -1e30f;
-  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(positions.size());
-#pragma omp parallel for schedule(static) reduction(min                          \
-                                                    : lower_x, lower_y, lower_z) \
-    reduction(max                                                                \
-              : upper_x, upper_y, upper_z)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const Record& p = positions[i];
-    lower_x = std::min(lower_x, p.x);
-    lower_y = std::min(lower_y, p.y);
-    lower_z = std::min(lower_z, p.z);
-    upper_x = std::max(upper_x, p.x);
-    upper_y = std::max(upper_y, p.y);
-    upper_z = std::max(upper_z, p.z);
+  Bounds bounds;
+#pragma omp parallel
+  {
+    Bounds of_thread;
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < positions.size(); ++i) of_thread.include(positions[i]);
+#pragma omp critical(dmf_bounds)
+    bounds.include(of_thread);
   }
-  if (count == 0)
+  if (positions.empty())
     grid_.lay(domain_, domain_.lower.cast<float>(), domain_.upper.cast<float>(), range_);
   else
-    grid_.lay(domain_, {lower_x, lower_y, lower_z}, {upper_x, upper_y, upper_z}, range_);
+    grid_.lay(domain_, bounds.lower, bounds.upper, range_);
 }
 
 void Pairs::rebuild(Beads& beads, const PlaneWall& wall) {
@@ -82,9 +109,7 @@ void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const Plane
     for (NeighbourCell& cell : blocks_[b].cells) find_runs(blocks_[b], cell, listed, wall);
     most = std::max({most, blocks_[b].slots, blocks_[b].wall_slots});
   }
-  if (most > NeighbourBlock::most_slots)
-    throw std::length_error(fmt::format("{} beads around one cell, allowed: {}", most,
-                                        std::uint32_t{NeighbourBlock::most_slots}));
+  require_slots(most);
   stale_ = false;
 }
 
@@ -98,12 +123,16 @@ void Pairs::divide_into_blocks() {
       if (used == blocks_.size()) blocks_.emplace_back();
       NeighbourBlock& block = blocks_[used++];
       block.begin = cell_begin;
-      block.slots = block.wall_slots = 0;
+      block.slots = block.wall_slots = block.body_slots = 0;
       block.cells.clear();
       block.runs.clear();
       block.wall_runs.clear();
+      block.body_runs.clear();
     }
-    blocks_[used - 1].cells.push_back({cell_begin, cell_end, 0, 0, 0, 0, false});
+    NeighbourCell whole{};
+    whole.begin = cell_begin;
+    whole.end = cell_end;
+    blocks_[used - 1].cells.push_back(whole);
     end = blocks_[used - 1].end = cell_end;
   }
   blocks_.resize(used);
@@ -111,17 +140,12 @@ void Pairs::divide_into_blocks() {
 
 void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
                       const PlaneWall& wall) const {
-  Eigen::Vector3f lower = Eigen::Vector3f::Constant(1e30f), upper = -lower;
-  for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-    const Eigen::Vector3f at(listed[i].x, listed[i].y, listed[i].z);
-    lower = lower.cwiseMin(at);
-    upper = upper.cwiseMax(at);
-  }
-  lower.array() -= static_cast<float>(range_);
-  upper.array() += static_cast<float>(range_);
+  Bounds around = bounds_of(listed, cell.begin, cell.end);
+  around.lower.array() -= static_cast<float>(range_);
+  around.upper.array() += static_cast<float>(range_);
   const auto append = [&](const CellGrid& grid, std::vector<BeadRun>& runs, std::uint32_t& slots) {
     const std::size_t before = runs.size();
-    append_runs(grid, domain_, lower, upper, runs);
+    append_runs(grid, domain_, around.lower, around.upper, runs);
     std::uint32_t count = 0;
     for (std::size_t run = before; run < runs.size(); ++run) {
       count += runs[run].end - runs[run].begin;
@@ -131,17 +155,85 @@ void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedV
     return std::make_pair(static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(runs.size()));
   };
   std::tie(cell.first_run, cell.end_run) = append(grid_, block.runs, block.slots);
-  if (wall.size() > 0 && lower.z() <= wall.plane())
+  if (wall.size() > 0 && around.lower.z() <= wall.plane())
     std::tie(cell.first_wall_run, cell.end_wall_run) = append(wall.grid(), block.wall_runs, block.wall_slots);
   block.in_range_begin.resize(block.end - block.begin + 1);
+}
+
+void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const PlaneWall& wall) {
+  forget_bodies();
+  std::vector<BodyPatch> patches;
+  std::uint32_t most = 0;
+  for (std::size_t k = 0; k < bodies.all().size(); ++k) {
+    const Microparticle& particle = bodies.all()[k];
+    if (particle.placement.smooth) {
+      const Eigen::Vector3f centre = particle.body.position.cast<float>();
+      const float reach = static_cast<float>(particle.placement.radius + range_);
+      smooth_neighbours_.push_back({k, {}, {}});
+      append_runs(grid_, domain_, centre.array() - reach, centre.array() + reach,
+                  smooth_neighbours_.back().liquid);
+      if (wall.size() > 0 && centre.z() - reach <= wall.plane())
+        append_runs(wall.grid(), domain_, centre.array() - reach, centre.array() + reach,
+                    smooth_neighbours_.back().wall);
+      continue;
+    }
+    std::uint32_t begin = particle.first_bead;
+    for (const std::uint32_t patch_end : particle.patch_ends) {
+      if (begin == particle.first_bead || begin - body_blocks_.back().begin >= block_size) {
+        body_blocks_.emplace_back();
+        body_blocks_.back().begin = begin;
+      }
+      NeighbourBlock& block = body_blocks_.back();
+      NeighbourCell patch{};
+      patch.begin = begin;
+      patch.end = block.end = begin = particle.first_bead + patch_end;
+      find_runs(block, patch, bodies.beads().listed, wall);
+      most = std::max({most, block.slots, block.wall_slots});
+      block.cells.push_back(patch);
+      patches.push_back({patch.begin, patch.end, bounds_of(bodies.beads().listed, patch.begin, patch.end)});
+    }
+  }
+#pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    blocks_[b].body_runs.clear();
+    blocks_[b].body_slots = 0;
+    for (NeighbourCell& cell : blocks_[b].cells) find_body_runs(blocks_[b], cell, beads.listed, patches);
+    most = std::max(most, blocks_[b].body_slots);
+  }
+  require_slots(most);
+}
+
+void Pairs::find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
+                           const std::vector<BodyPatch>& patches) const {
+  const Bounds bounds = bounds_of(listed, cell.begin, cell.end);
+  cell.first_body_run = static_cast<std::uint32_t>(block.body_runs.size());
+  std::uint32_t count = 0;
+  for (const BodyPatch& patch : patches) {
+    Eigen::Vector3f apart = 0.5f * (patch.bounds.lower + patch.bounds.upper - bounds.lower - bounds.upper);
+    const Eigen::Vector3f reach =
+        0.5f * (patch.bounds.upper - patch.bounds.lower + bounds.upper - bounds.lower);
+    int image[3] = {0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis)
+      if (domain_.periodic(axis)) {
+        const float period = static_cast<float>(domain_.size()[axis]);
+        image[axis] = -static_cast<int>(std::lround(apart[axis] / period));
+        apart[axis] += static_cast<float>(image[axis]) * period;
+      }
+    if (((apart.cwiseAbs() - reach).array() > static_cast<float>(range_)).any()) continue;
+    block.body_runs.push_back({patch.begin, patch.end, PeriodicImages::index(image[0], image[1], image[2])});
+    count += patch.end - patch.begin;
+  }
+  cell.end_body_run = static_cast<std::uint32_t>(block.body_runs.size());
+  block.body_slots = std::max(block.body_slots, count);
 }
 
 std::size_t Pairs::memory_bytes() const {
   std::size_t bytes = order_.capacity() * 4 + grid_.memory_bytes();
   for (const NeighbourBlock& block : blocks_)
-    bytes += block.cells.capacity() * sizeof(NeighbourCell) +
-             (block.runs.capacity() + block.wall_runs.capacity()) * sizeof(BeadRun) +
-             block.in_range_begin.capacity() * 4 + block.in_range.capacity() * 2;
+    bytes +=
+        block.cells.capacity() * sizeof(NeighbourCell) +
+        (block.runs.capacity() + block.wall_runs.capacity() + block.body_runs.capacity()) * sizeof(BeadRun) +
+        block.in_range_begin.capacity() * 4 + block.in_range.capacity() * 2;
   return bytes;
 }
 

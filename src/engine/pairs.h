@@ -3,12 +3,21 @@
 #include <vector>
 
 #include "engine/beads.h"
+#include "engine/bodies/microparticles.h"
 #include "engine/cell_grid.h"
 #include "engine/neighbours.h"
 #include "engine/parameters.h"
 #include "engine/walls/plane_wall.h"
 
 namespace dmf::engine {
+
+struct BodyPatch;
+
+/// What is near a smooth sphere.
+struct SmoothNeighbours {
+  std::size_t microparticle;  ///< index into Microparticles::all()
+  std::vector<BeadRun> liquid, wall;
+};
 
 /// Where to look for the beads in range of a bead: beads sorted into cells that are wider than r_c by the
 /// skin, and for every cell the runs of beads around it. Holds until some bead has moved half the skin; who
@@ -33,8 +42,21 @@ class Pairs {
   /// @throws InvalidInput when that is not the order of these cells.
   void restore(const Beads& beads, const PlaneWall& wall);
 
+  /// Notes which patches of microparticles are near which cells, and what liquid and wall are near which
+  /// patches, from where they are now. After each rebuild() or restore(), when there are microparticles.
+  /// @throws std::length_error as rebuild().
+  void find_bodies(const Microparticles& bodies, const Beads& beads, const PlaneWall& wall);
+
+  void forget_bodies() {
+    body_blocks_.clear();
+    smooth_neighbours_.clear();
+  }
+
   std::vector<NeighbourBlock>& blocks() { return blocks_; }
   const std::vector<NeighbourBlock>& blocks() const { return blocks_; }
+  /// Blocks of beads of microparticles, none of two: their cells are patches, their runs liquid and wall.
+  const std::vector<NeighbourBlock>& body_blocks() const { return body_blocks_; }
+  const std::vector<SmoothNeighbours>& smooth_neighbours() const { return smooth_neighbours_; }
   std::uint64_t builds() const { return builds_; }
   std::size_t memory_bytes() const;
 
@@ -42,8 +64,11 @@ class Pairs {
   void lay_grid(const AlignedVector<Record>& positions);
   void find_neighbourhoods(const AlignedVector<Record>& listed, const PlaneWall& wall);
   void divide_into_blocks();
+  /// `listed` is where the beads of the cell were when they were sorted.
   void find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
                  const PlaneWall& wall) const;
+  void find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
+                      const std::vector<BodyPatch>& patches) const;
 
   Domain domain_;
   double range_;  ///< r_c + skin
@@ -52,7 +77,8 @@ class Pairs {
   std::uint64_t builds_ = 0;
   CellGrid grid_;
   std::vector<std::uint32_t> order_;
-  std::vector<NeighbourBlock> blocks_;
+  std::vector<NeighbourBlock> blocks_, body_blocks_;
+  std::vector<SmoothNeighbours> smooth_neighbours_;
 };
 
 }  // namespace dmf::engine

@@ -40,6 +40,17 @@ void check_liquid(const LiquidParameters& liquid, RangeCheck& check) {
                "above 0 up to 1000 (k_BT / r_c^2)");
 }
 
+void check_microparticles(const MicroparticleParameters& model, RangeCheck& check) {
+  check.within("microparticle_model.elastic_modulus", model.elastic_modulus, tiny, 1e12,
+               "above 0 up to 1e12 (k_BT / r_c^3)");
+  check.within("microparticle_model.wall_attraction", model.wall_attraction, -200, 0,
+               "-200 to 0 (attraction is negative)");
+  check.within("microparticle_model.liquid_repulsion", model.liquid_repulsion, tiny, 500,
+               "above 0 up to 500");
+  check.within("microparticle_model.particle_adhesion", model.particle_adhesion, 0, 1e6,
+               "0 to 1e6 (k_BT / r_c)");
+}
+
 void check_domain(const Domain& domain, double list_range, RangeCheck& check) {
   static const char* const axes = "xyz";
   for (int axis = 0; axis < 3; ++axis) {
@@ -71,6 +82,7 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check_liquid(parameters.liquid, check);
   check.within("wall.lattice_constant", parameters.wall.lattice_constant, 0.5, 1.5, "0.5 to 1.5 (r_c)");
   check.within("wall.layers", parameters.wall.layers, 1, 8, "1 to 8");
+  check_microparticles(parameters.microparticles, check);
   check_domain(parameters.domain, parameters.liquid.cutoff_radius + parameters.list_skin, check);
   check.within("time_step", parameters.time_step, tiny, 0.1, "above 0 up to 0.1 (tau)");
   check.within("integrator_lambda", parameters.integrator_lambda, 0.5, 1, "0.5 to 1");

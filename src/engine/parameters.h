@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -59,6 +60,12 @@ struct Domain {
   Vector3d size() const { return upper - lower; }
   bool periodic(int axis) const { return lower_side[axis] == Side::periodic; }
   bool has_wall() const { return lower_side[2] == Side::wall; }
+  /// The shortest of a distance and its periodic images.
+  Vector3d nearest_image(Vector3d d) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (periodic(axis)) d[axis] -= size()[axis] * std::nearbyint(d[axis] / size()[axis]);
+    return d;
+  }
   bool contains(const Vector3d& p) const {
     return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all();
   }
@@ -70,9 +77,29 @@ enum class Integrator {
   baoab,         ///< splitting, Leimkuhler and Matthews (2013): good up to a time step of 0.03
 };
 
+/// How friction acts on a microparticle that touches the wall (docs/physics.md).
+enum class ContactModel {
+  lan2016,  ///< Lan 3.1.3-3.1.4: friction slows the centre without turning it, and what turns also rolls on
+  coulomb,  ///< friction acts at the point of contact: it slows the centre and turns the body
+};
+
+/// What all microparticles share. Defaults are Lan's table 3.2.
+struct MicroparticleParameters {
+  ContactModel contact = ContactModel::lan2016;
+  double elastic_modulus = 1e6;    ///< E of Hertz's law, k_BT / r_c^3; above 0, limited by time_step
+  double wall_attraction = -1.0;   ///< A_sw of each of its beads and wall bead; [-200, 0]
+  double liquid_repulsion = 3.0;   ///< B_ls; (0, 500]
+  double particle_adhesion = 0.0;  ///< force that holds two touching microparticles of radius 1; [0, 1e6]
+  // What counts in the densities of the many-body law is not stated in the paper; docs/physics.md compares.
+  bool counts_own_beads = true;   ///< a body's beads count each other
+  bool counts_liquid = true;      ///< a body's beads count the liquid
+  bool counted_by_liquid = true;  ///< the liquid counts a body's beads
+};
+
 struct Parameters {
   LiquidParameters liquid;
   WallParameters wall;
+  MicroparticleParameters microparticles;
   Domain domain;
   double time_step = 0.01;  ///< Delta t, tau; (0, 0.1]
   Integrator integrator = Integrator::groot_warren;

@@ -11,12 +11,26 @@
 namespace dmf::engine {
 
 /// What kind of thing a number in a file measures. A bare number is in the native unit, which is the reduced
-/// one for lengths, times and volumes; text such as "1.5 mm" is converted.
-enum class Dimension { number, length, time, volume, angle, voltage, frequency, density, surface_tension };
+/// one for lengths, times, volumes, masses, accelerations and forces; text such as "1.5 mm" is converted.
+enum class Dimension {
+  number,
+  length,
+  time,
+  volume,
+  angle,
+  voltage,
+  frequency,
+  density,
+  surface_tension,
+  mass,
+  acceleration,
+  force
+};
 
 /// A number as it was written, before the scene's units are applied.
 struct WrittenQuantity {
-  double value;  ///< native when `bare`, else in the base unit: m, s, m^3, degrees, V, Hz, kg/m^3, N/m
+  double value;  ///< native when `bare`, else in the base unit: m, s, m^3, degrees, V, Hz, kg/m^3, N/m, kg,
+                 ///< m/s^2, N
   bool bare;     ///< written without a unit
 };
 
@@ -54,6 +68,15 @@ inline constexpr std::array kUnitNames{
     UnitName{"g/cm^3", Dimension::density, 1e3},
     UnitName{"N/m", Dimension::surface_tension, 1},
     UnitName{"mN/m", Dimension::surface_tension, 1e-3},
+    UnitName{"kg", Dimension::mass, 1},
+    UnitName{"mg", Dimension::mass, 1e-6},
+    UnitName{"ug", Dimension::mass, 1e-9},
+    UnitName{"ng", Dimension::mass, 1e-12},
+    UnitName{"m/s^2", Dimension::acceleration, 1},
+    UnitName{"N", Dimension::force, 1},
+    UnitName{"uN", Dimension::force, 1e-6},
+    UnitName{"nN", Dimension::force, 1e-9},
+    UnitName{"pN", Dimension::force, 1e-12},
 };
 
 }  // namespace quantity_detail
@@ -81,9 +104,24 @@ inline std::string unit_names(Dimension dimension) {
 
 /// What a bare number of this dimension is measured in.
 inline std::string_view native_unit(Dimension dimension) {
-  constexpr std::array<std::string_view, 9> names{"",  "r_c", "tau",    "r_c^3", "degrees",
-                                                  "V", "Hz",  "kg/m^3", "N/m"};
+  constexpr std::array<std::string_view, 12> names{"",   "r_c",    "tau", "r_c^3", "degrees",   "V",
+                                                   "Hz", "kg/m^3", "N/m", "beads", "r_c/tau^2", "k_BT/r_c"};
   return names[static_cast<std::size_t>(dimension)];
+}
+
+/// The native unit is a reduced one: it means something only together with the scene's units.
+inline bool is_reduced(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+    case Dimension::time:
+    case Dimension::volume:
+    case Dimension::mass:
+    case Dimension::acceleration:
+    case Dimension::force:
+      return true;
+    default:
+      return false;
+  }
 }
 
 /// Reads "1.5 mm", "1.5mm" or "1.5". Empty when the text is no number, the unit is unknown or measures
@@ -108,6 +146,12 @@ inline double native_in_base(Dimension dimension, const Units& units) {
       return units.time_s;
     case Dimension::volume:
       return units.volume_m3();
+    case Dimension::mass:
+      return units.mass_kg;
+    case Dimension::acceleration:
+      return units.acceleration_m_per_s2();
+    case Dimension::force:
+      return units.force_N();
     default:
       return 1;
   }

@@ -5,11 +5,14 @@
 #include <omp.h>
 
 #include <cmath>
+#include <limits>
 
 #include "engine/archive.h"
 #include "engine/beads.h"
+#include "engine/bodies/microparticles.h"
 #include "engine/forces.h"
 #include "engine/integrate.h"
+#include "engine/observe/carriage.h"
 #include "engine/observe/droplet_tracker.h"
 #include "engine/observe/state_hash.h"
 #include "engine/observe/virial.h"
@@ -40,6 +43,7 @@ struct Simulation::State {
         curve(std::move(c)),
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
         wall(parameters.domain, parameters.wall, parameters.liquid.cutoff_radius + parameters.list_skin),
+        microparticles(parameters, wall),
         pairs(parameters),
         forces(parameters, execution.kernel),
         tracker(parameters, wall.plane()) {}
@@ -49,9 +53,12 @@ struct Simulation::State {
   int threads;
   PlaneWall wall;
   Beads beads;
+  Microparticles microparticles;
   Pairs pairs;
   Forces forces;
   DropletTracker tracker;
+  Carriage carriage;
+  BodyForces far;
   std::uint64_t step = 0;
   std::uint32_t next_bead_id = 0;
   std::string fault;
@@ -61,6 +68,10 @@ struct Simulation::State {
     for (const Record& v : beads.velocity) twice_energy += velocity_of(v).squaredNorm();
     return beads.size() > 0 ? twice_energy / (3.0 * static_cast<double>(beads.size())) : 0.0;
   }
+
+  /// What a force from afar may do: what starts from rest in every step anew moves by a dt^2, at most 0.001
+  /// r_c.
+  double largest_acceleration() const { return 1e-3 / (parameters.time_step * parameters.time_step); }
 
   /// Stops the run for good. @throws Instability.
   [[noreturn]] void stop(const std::string& why) {
@@ -79,15 +90,44 @@ struct Simulation::State {
         beads.id[report.wild_bead], p.x, p.y, p.z, v.x, v.y, v.z, largest_step, parameters.time_step));
   }
 
+  void require_sound_bodies(const BodyDriftReport& report) {
+    if (report.wild == 0) return;
+    stop(fmt::format(
+        "microparticle {} moves more than {} r_c a step, or to no number; look at time_step ({}), "
+        "elastic_modulus ({}), its mass and the forces on it",
+        report.wild, largest_step, parameters.time_step, parameters.microparticles.elastic_modulus));
+  }
+
   /// After every move: stops a run that jumped, sorts beads anew when cells may miss a pair.
-  void keep_pairs(const DriftReport& moved) {
+  void keep_pairs(const DriftReport& moved, const BodyDriftReport& bodies_moved = {}) {
     require_sound_drift(moved);
-    if (!pairs.stale(moved.largest_displacement_squared)) return;
+    require_sound_bodies(bodies_moved);
+    if (pairs.stale(std::max(moved.largest_displacement_squared, bodies_moved.largest_displacement_squared)))
+      find_pairs();
+  }
+
+  void find_pairs() {
     try {
       pairs.rebuild(beads, wall);
+      if (microparticles.empty()) return pairs.forget_bodies();
+      microparticles.note_listed();
+      pairs.find_bodies(microparticles, beads, wall);
     } catch (const std::length_error& crowd) {
       stop(fmt::format("{}: the liquid has collapsed; look at its attraction and repulsion", crowd.what()));
     }
+  }
+
+  void look() {
+    tracker.update(step, beads, pairs.blocks());
+    carriage.update(step, microparticles, beads, pairs, parameters, tracker);
+    microparticles.note_look();
+    for (const Microparticle& particle : microparticles.all())
+      if (const std::uint32_t leaked = carriage.of(particle.id).leaked)
+        stop(
+            fmt::format("microparticle {}: {} liquid beads inside; its {} beads on radius {} r_c at "
+                        "attraction {} don't keep the liquid out, look at beads and liquid_repulsion ({})",
+                        particle.id, leaked, particle.bead_count(), particle.placement.radius,
+                        particle.placement.attraction, parameters.microparticles.liquid_repulsion));
   }
 
   void require_sound_temperature() {
@@ -98,8 +138,35 @@ struct Simulation::State {
                        parameters.liquid.random_amplitude));
   }
 
+  MicroparticleObservation observed(const Microparticle& particle) const {
+    MicroparticleObservation seen;
+    const Carriage::Entry carried = carriage.of(particle.id);
+    seen.id = particle.id;
+    seen.radius = particle.bounding_radius;
+    seen.magnetic = particle.placement.magnetic;
+    seen.points = particle.points;
+    seen.point_radius = particle.points ? particle.placement.radius : 0.0;
+    seen.beads = particle.bead_count();
+    seen.mass = particle.body.mass;
+    seen.attraction = particle.placement.attraction;
+    seen.position = particle.body.position;
+    seen.orientation = particle.body.orientation;
+    seen.velocity = particle.body.velocity;
+    seen.angular_velocity = particle.body.angular_velocity();
+    seen.contact_fraction = particle.means.contact_fraction;
+    seen.normal_force = particle.means.normal_force;
+    seen.drive_force = particle.means.drive_force;
+    seen.friction_force = particle.means.friction_force;
+    seen.immersion = carried.immersion;
+    seen.droplet = carried.droplet;
+    seen.place = place_in(carried, particle.body.position, tracker.droplets(), parameters.domain);
+    seen.totals = particle.totals;
+    return seen;
+  }
+
   void archive(Archive& archive) {
-    constexpr std::uint64_t current = 2;  // 1: beads in the order of neighbour lists
+    // 1: beads in the order of neighbour lists. 2: no microparticles.
+    constexpr std::uint64_t current = 3;
     std::uint64_t format = current;
     archive(format);
     if (format != current)
@@ -114,6 +181,10 @@ struct Simulation::State {
     archive(attraction);
     wall.set_attraction(attraction);
     tracker.archive(archive);
+    microparticles.archive(archive);
+    carriage.archive(archive);
+    archive(far.gravity);
+    archive(far.magnetic);
   }
 };
 
@@ -132,22 +203,26 @@ void Simulation::step() {
 
   // Voltages have become wettability in set_wettability(), between steps.
   if (s.parameters.integrator == Integrator::groot_warren) {
-    s.keep_pairs(drift(s.beads, s.parameters, s.step));
-    s.forces.density(s.beads, s.wall, s.pairs);
-    s.forces.force(s.beads, s.wall, s.pairs);
+    const DriftReport moved = drift(s.beads, s.parameters, s.step);
+    s.keep_pairs(moved, s.microparticles.drift());
+    s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
+    s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
+    if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
     finish(s.beads, s.parameters);
+    s.microparticles.finish(s.far);
   } else {
     s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step));
-    thermostat(s.beads, s.wall, s.pairs, s.forces, s.parameters);
+    thermostat(s.beads, s.wall, s.microparticles, s.pairs, s.forces, s.parameters);
     s.keep_pairs(half_drift(s.beads, s.parameters, s.step));
-    s.forces.density(s.beads, s.wall, s.pairs);
-    s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.pairs);
+    s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
+    s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
+    if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
   }
   ++s.step;
 
   if (s.step % s.parameters.observe_interval == 0) {
     s.require_sound_temperature();
-    s.tracker.update(s.step, s.beads, s.pairs.blocks());
+    s.look();
   }
 }
 
@@ -155,9 +230,9 @@ void Simulation::step() {
 void Simulation::refresh() {
   State& s = *state_;
   omp_set_num_threads(s.threads);
-  s.pairs.rebuild(s.beads, s.wall);
-  s.forces.density(s.beads, s.wall, s.pairs);
-  s.tracker.update(s.step, s.beads, s.pairs.blocks());
+  s.find_pairs();
+  s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
+  s.look();
 }
 
 void Simulation::set_wettability(const ContactAngleField& field) {
@@ -165,9 +240,13 @@ void Simulation::set_wettability(const ContactAngleField& field) {
 }
 
 std::size_t Simulation::add_droplet(const DropletPlacement& placement) {
+  return place(droplet_sites(placement, state_->parameters));
+}
+
+std::size_t Simulation::place(const std::vector<Vector3d>& sites) {
   State& s = *state_;
-  const std::size_t placed =
-      place_beads(s.beads, droplet_sites(placement, s.parameters), s.parameters, s.step, s.next_bead_id);
+  s.microparticles.require_clear(sites);
+  const std::size_t placed = place_beads(s.beads, sites, s.parameters, s.step, s.next_bead_id);
   refresh();
   return placed;
 }
@@ -177,11 +256,7 @@ std::size_t Simulation::fill_box() {
 }
 
 std::size_t Simulation::fill_slab(const Vector3d& lower, const Vector3d& upper) {
-  State& s = *state_;
-  const std::size_t placed =
-      place_beads(s.beads, slab_sites(lower, upper, s.parameters), s.parameters, s.step, s.next_bead_id);
-  refresh();
-  return placed;
+  return place(slab_sites(lower, upper, state_->parameters));
 }
 
 void Simulation::remove_droplet(std::uint32_t id) {
@@ -210,12 +285,14 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   snapshot->wall_beads = s.wall.size();
   snapshot->vapour_beads = s.tracker.vapour_beads();
   snapshot->droplets = s.tracker.droplets();
+  for (const Microparticle& particle : s.microparticles.all())
+    snapshot->microparticles.push_back(s.observed(particle));
   Virial virial;
   if (request.virial) {
     virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
     snapshot->virial = virial.total;
   }
-  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall);
+  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
   if (request.beads) {
     std::vector<std::uint32_t> index_of_id(s.next_bead_id, 0xffffffffu);
     for (std::uint32_t i = 0; i < s.beads.size(); ++i) index_of_id[s.beads.id[i]] = i;
@@ -230,6 +307,43 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
     }
   }
   return snapshot;
+}
+
+std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
+  State& s = *state_;
+  std::vector<Vector3d> liquid;
+  for (const Record& bead : s.beads.position) liquid.emplace_back(bead.x, bead.y, bead.z);
+  const double force = placement.magnetic ? s.far.magnetic.norm() : 0.0;
+  const std::uint32_t id = s.microparticles.add(placement, liquid, force / s.largest_acceleration());
+  refresh();
+  return id;
+}
+
+void Simulation::remove_microparticle(std::uint32_t id) {
+  state_->microparticles.remove(id);
+  refresh();
+}
+
+void Simulation::set_body_forces(const BodyForces& forces) {
+  State& s = *state_;
+  const double largest = s.largest_acceleration();
+  const auto check = [](const char* key, const Vector3d& value, double allowed, const char* unit) {
+    if (!value.allFinite() || value.norm() > allowed)
+      throw InvalidInput(fmt::format("{}: ({}, {}, {}), allowed: finite, a magnitude of up to {:.4g} ({})",
+                                     key, value.x(), value.y(), value.z(), allowed, unit));
+  };
+  check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const Microparticle& particle : s.microparticles.all())
+    if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
+  check("body_forces.magnetic", forces.magnetic, largest * lightest, "k_BT / r_c");
+  s.far = forces;
+}
+
+const BodyForces& Simulation::body_forces() const { return state_->far; }
+
+std::vector<MicroparticleEvent> Simulation::take_microparticle_events() {
+  return state_->carriage.take_events();
 }
 
 std::vector<DropletEvent> Simulation::take_events() { return state_->tracker.take_events(); }
@@ -253,7 +367,8 @@ void Simulation::load_state(const std::string& bytes) {
     if (array->size() != count) throw InvalidInput("saved state: arrays of unequal length");
   omp_set_num_threads(s.threads);
   loaded->pairs.restore(loaded->beads, loaded->wall);
-  loaded->forces.density(loaded->beads, loaded->wall, loaded->pairs);
+  loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
+  loaded->forces.density(loaded->beads, loaded->wall, loaded->microparticles, loaded->pairs);
   state_ = std::move(loaded);
 }
 

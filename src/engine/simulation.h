@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/microparticle.h"
 #include "engine/observe/snapshot.h"
 #include "engine/parameters.h"
 #include "engine/wettability.h"
@@ -68,11 +69,28 @@ class Simulation {
   /// Takes a droplet's beads out. @throws InvalidInput when no such droplet is tracked.
   void remove_droplet(std::uint32_t id);
 
+  /// Places a microparticle at rest. @returns its id.
+  /// @throws InvalidInput, unchanged, when a number is out of range (with the range, or the number that would
+  /// work), its beads could not keep the liquid out, the contact would be too stiff for time_step, or it
+  /// reaches through the wall, out of the domain, into liquid or into another microparticle.
+  std::uint32_t add_microparticle(const MicroparticlePlacement& placement);
+
+  /// Takes a microparticle out. @throws InvalidInput when there is none of that id.
+  void remove_microparticle(std::uint32_t id);
+
+  /// From the next step on. @throws InvalidInput, unchanged, when a component is not finite or so strong that
+  /// one step from rest would lead farther than 0.001 r_c.
+  void set_body_forces(const BodyForces& forces);
+  const BodyForces& body_forces() const;
+
   /// The present state, immutable. Cheap without `beads` and `hash`: it copies what the tracker last saw.
   std::shared_ptr<const Snapshot> observe(const ObserveRequest& request = {}) const;
 
   /// Merges, splits, appearances since the last call, in order.
   std::vector<DropletEvent> take_events();
+
+  /// Pickups and drop-offs since the last call, in order.
+  std::vector<MicroparticleEvent> take_microparticle_events();
 
   /// The complete state as bytes: a simulation of the same parameters that loads it goes on with the same
   /// bits.
@@ -88,6 +106,7 @@ class Simulation {
   int threads() const;
 
  private:
+  std::size_t place(const std::vector<Vector3d>& sites);
   void refresh();
 
   struct State;

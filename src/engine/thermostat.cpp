@@ -22,18 +22,18 @@ void combine(Beads& beads, float of_velocity, float of_random, float of_force, T
 
 }  // namespace
 
-void thermostat(Beads& beads, const PlaneWall& wall, Pairs& pairs, const Forces& forces,
-                const Parameters& parameters) {
+void thermostat(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs,
+                const Forces& forces, const Parameters& parameters) {
   const float dt = static_cast<float>(parameters.time_step);
   const auto seen = [&](std::ptrdiff_t i) -> Record& { return beads.predicted[i]; };
   const auto velocity = [&](std::ptrdiff_t i) -> Record& { return beads.velocity[i]; };
 
-  forces.density(beads, wall, pairs);                                 // for who is in range
-  forces.force(PairForce::random, beads.random, beads, wall, pairs);  // N / dt
+  forces.density(beads, wall, bodies, pairs);                                 // for who is in range
+  forces.force(PairForce::random, beads.random, beads, wall, bodies, pairs);  // N / dt
   combine(beads, b, 0.5f * noise_second * dt, 0.f, seen);
-  forces.force(PairForce::friction, beads.force, beads, wall, pairs);  // -D (b v + c N)
+  forces.force(PairForce::friction, beads.force, beads, wall, bodies, pairs);  // -D (b v + c N)
   combine(beads, 1.f, 0.5f * noise_first * dt, 0.5f * dt, seen);
-  forces.force(PairForce::friction, beads.force, beads, wall, pairs);
+  forces.force(PairForce::friction, beads.force, beads, wall, bodies, pairs);
   combine(beads, 1.f, dt, dt, velocity);
 }
 

@@ -27,7 +27,7 @@ namespace dmf::engine {
 ///
 /// Needs the noise keys of the step; leaves densities of these positions, `beads.force` and
 /// `beads.predicted` undefined.
-void thermostat(Beads& beads, const PlaneWall& wall, Pairs& pairs, const Forces& forces,
-                const Parameters& parameters);
+void thermostat(Beads& beads, const PlaneWall& wall, Microparticles& bodies, Pairs& pairs,
+                const Forces& forces, const Parameters& parameters);
 
 }  // namespace dmf::engine

@@ -14,6 +14,7 @@ struct Units {
   double time_s;    ///< tau, s
 
   double velocity_m_per_s() const { return length_m / time_s; }
+  double acceleration_m_per_s2() const { return velocity_m_per_s() / time_s; }
   double energy_J() const { return mass_kg * velocity_m_per_s() * velocity_m_per_s(); }
   double force_N() const { return energy_J() / length_m; }
   double area_m2() const { return length_m * length_m; }

@@ -173,8 +173,7 @@ class YamlReader::Internals {
   }
 
   static bool needs_unit(const YamlReader& reader, Dimension dimension) {
-    return !reader.document_->units &&
-           (dimension == Dimension::length || dimension == Dimension::time || dimension == Dimension::volume);
+    return !reader.document_->units && is_reduced(dimension);
   }
 
   static std::optional<double> quantity(const YamlReader& reader, const YAML::Node& node,

@@ -51,8 +51,8 @@ class YamlReader {
   /// Same from text; `name` stands for the file in messages.
   static YamlReader parse(const std::string& text, const std::string& name);
 
-  /// What a reduced unit is from here on, for quantities that are written with a unit. Until then a length,
-  /// time or volume must have a unit, and is returned in m, s, m^3.
+  /// What a reduced unit is from here on, for quantities that are written with a unit. Until then what has a
+  /// reduced native unit (a length, a time, a mass) must have a unit, and is returned in SI.
   void set_units(const Units& units);
 
   bool has(const std::string& key) const;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/beads.h"
+#include "engine/bodies/microparticles.h"
 #include "engine/forces.h"
 #include "engine/noise.h"
 #include "engine/pairs.h"
@@ -19,6 +20,7 @@ struct System {
   Parameters parameters;
   Beads beads;
   ContactAngleCurve curve = ContactAngleCurve::lan2016();
+  std::vector<MicroparticlePlacement> microparticles{};
 };
 
 inline Parameters periodic_box(double size) {
@@ -62,6 +64,14 @@ void scatter_beads(System& system, double density, const Vector3d& lower, const 
     const Vector3d at = lower + fraction.cwiseProduct(upper - lower);
     if (inside(at)) add_bead(system, at);
   }
+}
+
+/// Lan's microparticle, on the wall when it has no z.
+inline MicroparticlePlacement sphere_at(const Eigen::Vector2d& center, std::optional<double> z = {}) {
+  MicroparticlePlacement placement;
+  placement.center = center;
+  placement.z = z;
+  return placement;
 }
 
 inline std::vector<System> all_systems() {
@@ -124,15 +134,34 @@ inline std::vector<System> all_systems() {
     System& s = begin("one bead on the wall plane", plate(9, 10));
     add_bead(s, {4, 4, 0});
   }
+  {
+    System& s = begin("droplet around a microparticle on the wall", plate(14, 12));
+    s.microparticles = {sphere_at({6, 7})};
+    scatter_beads(s, 6, {2, 2, 0}, {12, 12, 8}, [](const Vector3d& p) {
+      return (p - Vector3d(7, 7, 2)).norm() < 4 && (p - Vector3d(6, 7, 1)).norm() > 1.3;
+    });
+  }
+  {
+    System& s = begin("two microparticles in liquid over a periodic corner", periodic_box(9));
+    s.microparticles = {sphere_at({0.2, 8.8}, 0.1), sphere_at({3.5, 0.3}, 8.5)};
+    scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, [&s](const Vector3d& p) {
+      for (const MicroparticlePlacement& one : s.microparticles) {
+        const Vector3d centre(one.center.x(), one.center.y(), *one.z);
+        if (s.parameters.domain.nearest_image(p - centre).norm() < 1.2) return false;
+      }
+      return true;
+    });
+  }
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));
   return systems;
 }
 
 /// Kernels load whole registers, past the last bead too: what they find there must not matter.
-inline void poison_behind(Beads& beads) {
+inline void poison_behind(Beads& beads, BodyBeads& body_beads) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (AlignedVector<Record>* array : {&beads.position, &beads.predicted}) {
+  for (AlignedVector<Record>* array :
+       {&beads.position, &beads.predicted, &body_beads.position, &body_beads.moving}) {
     const std::size_t count = array->size();
     array->resize(count + 16, {nan, nan, nan, nan});
     array->resize(count);
@@ -148,5 +177,35 @@ inline PlaneWall wall_of(const System& system) {
                        system.curve);
   return wall;
 }
+
+/// The microparticles of a system, every bead of them with a velocity of its own.
+inline Microparticles microparticles_of(const System& system, const PlaneWall& wall) {
+  Microparticles bodies(system.parameters, wall);
+  for (const MicroparticlePlacement& placement : system.microparticles) bodies.add(placement, {});
+  bodies.note_listed();
+  std::uint32_t k = 0;
+  for (Record& moving : bodies.beads().moving)
+    for (float* component : {&moving.x, &moving.y, &moving.z})
+      *component = static_cast<float>(2 * scatter(7777 + k++) - 1);
+  return bodies;
+}
+
+/// A system whose beads have been sorted and whose neighbours are known: ready for its forces.
+struct Sorted {
+  Sorted(System& system, const std::string& kernel)
+      : wall(wall_of(system)),
+        bodies(microparticles_of(system, wall)),
+        pairs(system.parameters),
+        forces(system.parameters, kernel) {
+    pairs.rebuild(system.beads, wall);
+    pairs.find_bodies(bodies, system.beads, wall);
+    poison_behind(system.beads, bodies.beads());
+  }
+
+  PlaneWall wall;
+  Microparticles bodies;
+  Pairs pairs;
+  Forces forces;
+};
 
 }  // namespace dmf::engine

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "engine/kernels/lanes-inl.h"
 #include "engine/noise-inl.h"
@@ -15,11 +16,20 @@
 namespace dmf::engine {
 namespace {
 
+/// What the sums are over, one end of a pair: liquid, wall and microparticles alike.
+struct End {
+  Record at;
+  Vector3d velocity = Vector3d::Zero();
+  double density = 0;
+  std::uint32_t key = 0;
+};
+
+/// Forces on the beads of one kind. `scale` is the sum of the absolute values of all contributions: what
+/// rounding is relative to.
 struct Exact {
-  std::vector<double> density, density_scale;
+  std::vector<double> density;
   std::vector<Vector3d> force, conservative, random, friction;
-  std::vector<double>
-      scale;  ///< sum of the absolute values of all contributions: what rounding is relative to
+  std::vector<double> scale;
 };
 
 std::uint32_t bits(float value) {
@@ -29,59 +39,120 @@ std::uint32_t bits(float value) {
 }
 
 Vector3d apart(const Domain& domain, const Record& a, const Record& b) {
-  Vector3d d(double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z);
-  for (int axis = 0; axis < 3; ++axis)
-    if (domain.periodic(axis)) d[axis] -= domain.size()[axis] * std::nearbyint(d[axis] / domain.size()[axis]);
-  return d;
+  return domain.nearest_image(Vector3d(double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z));
 }
 
-Exact sum_over_all_pairs(const System& system, const PlaneWall& wall) {
-  const Beads& beads = system.beads;
-  const MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step);
-  const double r_d = system.parameters.liquid.repulsion_radius;
-  const auto velocity = [&](std::size_t i) {
-    return Vector3d(beads.predicted[i].x, beads.predicted[i].y, beads.predicted[i].z);
-  };
-  Exact exact;
-  for (std::size_t i = 0; i < beads.size(); ++i) {
-    double density = 0;
-    for (std::size_t j = 0; j < beads.size(); ++j)
-      if (j != i)
-        density += HWY_NAMESPACE::density_weight(
-            apart(system.parameters.domain, beads.position[i], beads.position[j]).norm(), 1 / r_d);
-    exact.density.push_back(density * density_normalization(r_d));
-  }
-  for (std::size_t i = 0; i < beads.size(); ++i) {
-    Vector3d total = Vector3d::Zero(), conservative = total, random = total, friction = total;
-    double scale = 0;
-    const auto add = [&](const Vector3d& d, double attraction, double density_sum, const Vector3d& parting,
-                         double zeta) {
-      const double r = d.norm();
-      if (r >= 1) return;
-      const double approach = parting.dot(d) / r;
-      total += HWY_NAMESPACE::mdpd_force(law, attraction, r, density_sum, approach, zeta) / r * d;
-      const double weight = 1 - r;
-      conservative += HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) / r * d;
-      random += law.random_amplitude * weight * zeta / r * d;
-      friction -= law.friction * weight * weight * approach / r * d;
-      scale += std::abs(attraction) + law.repulsion * density_sum + std::abs(law.random_amplitude * zeta) +
-               law.friction * std::abs(approach);
+/// All ends of a system, with densities.
+struct Ends {
+  std::vector<End> liquid, wall, bodies;
+
+  Ends(const System& system, const Sorted& sorted) : domain(system.parameters.domain) {
+    const Beads& beads = system.beads;
+    const BodyBeads& body_beads = sorted.bodies.beads();
+    for (std::size_t i = 0; i < beads.size(); ++i) {
+      const Record& v = beads.predicted[i];
+      liquid.push_back({beads.position[i], {v.x, v.y, v.z}, 0, bits(beads.position[i].w)});
+    }
+    for (std::uint32_t k = 0; k < sorted.wall.size(); ++k)
+      wall.push_back({sorted.wall.beads()[k], Vector3d::Zero(), 0, HWY_NAMESPACE::wall_key(k)});
+    for (std::uint32_t k = 0; k < body_beads.size(); ++k) {
+      const Record& v = body_beads.moving[k];
+      bodies.push_back({body_beads.position[k], {v.x, v.y, v.z}, 0, HWY_NAMESPACE::body_key(k)});
+    }
+    const double r_d = system.parameters.liquid.repulsion_radius;
+    const auto count = [&](End& i, const std::vector<End>& others) {
+      for (const End& j : others)
+        if (&i != &j)
+          i.density += density_normalization(r_d) *
+                       HWY_NAMESPACE::density_weight(apart(domain, i.at, j.at).norm(), 1 / r_d);
     };
-    for (std::size_t j = 0; j < beads.size(); ++j)
-      if (j != i)
-        add(apart(system.parameters.domain, beads.position[i], beads.position[j]), law.attraction,
-            exact.density[i] + exact.density[j], velocity(i) - velocity(j),
-            HWY_NAMESPACE::pair_noise<double>(bits(beads.position[i].w), bits(beads.position[j].w)));
-    for (std::size_t k = 0; k < wall.size(); ++k)
-      add(apart(system.parameters.domain, beads.position[i], wall.beads()[k]), wall.beads()[k].w,
-          exact.density[i], velocity(i),
-          HWY_NAMESPACE::pair_noise<double>(bits(beads.position[i].w),
-                                            HWY_NAMESPACE::wall_key(static_cast<std::uint32_t>(k))));
-    exact.force.push_back(total);
-    exact.conservative.push_back(conservative);
-    exact.random.push_back(random);
-    exact.friction.push_back(friction);
-    exact.scale.push_back(scale);
+    for (End& i : liquid) {
+      count(i, liquid);
+      count(i, bodies);
+    }
+    for (const Microparticle& particle : sorted.bodies.all()) {
+      // Only the beads of its own body count.
+      const std::vector<End> own(bodies.begin() + particle.first_bead,
+                                 bodies.begin() + particle.first_bead + particle.bead_count());
+      for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
+        End& i = bodies[particle.first_bead + k];
+        count(i, own);
+        i.density -= density_normalization(r_d);  // itself, at distance 0
+        count(i, liquid);
+      }
+    }
+  }
+  Domain domain;
+};
+
+/// Adds the forces of `others` on one bead.
+void add_forces(const Domain& domain, const MdpdLaw<double>& law, const End& i,
+                const std::vector<End>& others, const std::function<double(const End&)>& attraction_of,
+                std::size_t k, Exact& exact) {
+  for (const End& j : others) {
+    if (&i == &j) continue;
+    const Vector3d d = apart(domain, i.at, j.at);
+    const double r = d.norm();
+    if (r >= 1) continue;
+    const double attraction = attraction_of(j), density_sum = i.density + j.density;
+    const double approach = (i.velocity - j.velocity).dot(d) / r;
+    const double zeta = HWY_NAMESPACE::pair_noise<double>(i.key, j.key), weight = 1 - r;
+    exact.force[k] += HWY_NAMESPACE::mdpd_force(law, attraction, r, density_sum, approach, zeta) / r * d;
+    exact.conservative[k] += HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) / r * d;
+    exact.random[k] += law.random_amplitude * weight * zeta / r * d;
+    exact.friction[k] -= law.friction * weight * weight * approach / r * d;
+    exact.scale[k] += std::abs(attraction) + law.repulsion * density_sum +
+                      std::abs(law.random_amplitude * zeta) + law.friction * std::abs(approach);
+  }
+}
+
+Exact nothing_yet(const std::vector<End>& of) {
+  Exact exact;
+  for (const End& end : of) exact.density.push_back(end.density);
+  exact.force = exact.conservative = exact.random = exact.friction =
+      std::vector<Vector3d>(of.size(), Vector3d::Zero());
+  exact.scale.assign(of.size(), 0);
+  return exact;
+}
+
+double own_attraction(const End& end) { return end.at.w; }
+
+Exact sum_over_all_pairs(const System& system, const Sorted& sorted) {
+  const Ends ends(system, sorted);
+  const MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step);
+  MdpdLaw<double> body_law = law;
+  body_law.repulsion = system.parameters.microparticles.liquid_repulsion;
+  Exact exact = nothing_yet(ends.liquid);
+  for (std::size_t i = 0; i < ends.liquid.size(); ++i) {
+    const End& bead = ends.liquid[i];
+    add_forces(
+        ends.domain, law, bead, ends.liquid, [&](const End&) { return law.attraction; }, i, exact);
+    add_forces(ends.domain, law, bead, ends.wall, own_attraction, i, exact);
+    add_forces(ends.domain, body_law, bead, ends.bodies, own_attraction, i, exact);
+  }
+  return exact;
+}
+
+/// Forces of liquid and of wall on the beads of microparticles.
+struct ExactOnBodies {
+  Exact of_liquid, of_wall;
+};
+
+ExactOnBodies sum_over_all_body_pairs(const System& system, const Sorted& sorted) {
+  const Ends ends(system, sorted);
+  const MicroparticleParameters& model = system.parameters.microparticles;
+  MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step), adhesion = law;
+  law.repulsion = model.liquid_repulsion;
+  adhesion.repulsion = adhesion.friction = adhesion.random_amplitude = 0;
+  ExactOnBodies exact{nothing_yet(ends.bodies), nothing_yet(ends.bodies)};
+  for (std::size_t i = 0; i < ends.bodies.size(); ++i) {
+    const End& bead = ends.bodies[i];
+    add_forces(
+        ends.domain, law, bead, ends.liquid, [&](const End&) { return own_attraction(bead); }, i,
+        exact.of_liquid);
+    add_forces(
+        ends.domain, adhesion, bead, ends.wall, [&](const End&) { return model.wall_attraction; }, i,
+        exact.of_wall);
   }
   return exact;
 }
@@ -101,68 +172,68 @@ class EveryKernel : public testing::TestWithParam<std::string> {};
 TEST_P(EveryKernel, AgreesWithTheSumOverAllPairs) {
   for (System& system : all_systems()) {
     SCOPED_TRACE(system.name);
-    const PlaneWall wall = wall_of(system);
-    Pairs pairs(system.parameters);
-    const Forces forces(system.parameters, GetParam());
-    pairs.rebuild(system.beads, wall);
-    poison_behind(system.beads);
-    forces.density(system.beads, wall, pairs);
-    forces.force(system.beads, wall, pairs);
-    const Exact exact = sum_over_all_pairs(system, wall);
+    Sorted sorted(system, GetParam());
+    sorted.forces.density(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+    sorted.forces.force(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+    const Exact exact = sum_over_all_pairs(system, sorted);
     // A separation carries the rounding of coordinates up to 14 (2^-24 * 16 = 1e-6 absolute), which moves w
     // by 1/r_d of it: relative to the sum of absolute contributions a few 1e-6. 1e-5 leaves room for the
     // sums.
-    for (std::size_t i = 0; i < system.beads.size(); ++i) {
+    for (std::size_t i = 0; i < system.beads.size(); ++i)
       EXPECT_NEAR(system.beads.predicted[i].w, exact.density[i], 1e-5 * (10 + exact.density[i]))
           << "bead " << i;
-      const Record& f = system.beads.force[i];
-      EXPECT_LT((Vector3d(f.x, f.y, f.z) - exact.force[i]).norm(), 1e-5 * (1 + exact.scale[i]))
-          << "bead " << i;
-    }
+    expect_close(system.beads.force, exact.force, exact.scale, "on liquid");
+    const ExactOnBodies on_bodies = sum_over_all_body_pairs(system, sorted);
+    const BodyBeads& bodies = sorted.bodies.beads();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      EXPECT_NEAR(bodies.moving[i].w, on_bodies.of_liquid.density[i],
+                  1e-5 * (10 + on_bodies.of_liquid.density[i]))
+          << "bead " << i << " of microparticles";
+    expect_close(bodies.liquid_force, on_bodies.of_liquid.force, on_bodies.of_liquid.scale,
+                 "of liquid on microparticles");
+    expect_close(bodies.wall_force, on_bodies.of_wall.conservative, on_bodies.of_wall.scale,
+                 "of the wall on microparticles");
   }
 }
 
 TEST_P(EveryKernel, GivesEachPartOfTheForceByItself) {
   for (System& system : all_systems()) {
     SCOPED_TRACE(system.name);
-    const PlaneWall wall = wall_of(system);
-    Pairs pairs(system.parameters);
-    const Forces forces(system.parameters, GetParam());
-    pairs.rebuild(system.beads, wall);
-    poison_behind(system.beads);
-    forces.density(system.beads, wall, pairs);
-    const Exact exact = sum_over_all_pairs(system, wall);
+    Sorted sorted(system, GetParam());
+    sorted.forces.density(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+    const Exact exact = sum_over_all_pairs(system, sorted);
     AlignedVector<Record> to;
-    forces.force(PairForce::conservative, to, system.beads, wall, pairs);
+    const auto compute = [&](PairForce part) {
+      sorted.forces.force(part, to, system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+    };
+    compute(PairForce::conservative);
     expect_close(to, exact.conservative, exact.scale, "conservative");
-    forces.force(PairForce::random, to, system.beads, wall, pairs);
+    compute(PairForce::random);
     expect_close(to, exact.random, exact.scale, "random");
-    forces.force(PairForce::friction, to, system.beads, wall, pairs);
+    compute(PairForce::friction);
     expect_close(to, exact.friction, exact.scale, "friction");
   }
 }
 
-TEST_P(EveryKernel, ConservesMomentumAmongLiquidBeads) {
+TEST_P(EveryKernel, ConservesMomentumAmongLiquidAndMicroparticles) {
   for (System& system : all_systems()) {
     if (system.parameters.domain.has_wall()) continue;
     SCOPED_TRACE(system.name);
-    const PlaneWall wall = wall_of(system);
-    Pairs pairs(system.parameters);
-    const Forces forces(system.parameters, GetParam());
-    pairs.rebuild(system.beads, wall);
-    poison_behind(system.beads);
-    forces.density(system.beads, wall, pairs);
-    forces.force(system.beads, wall, pairs);
+    Sorted sorted(system, GetParam());
+    sorted.forces.density(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+    sorted.forces.force(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
     Vector3d total = Vector3d::Zero();
     double largest = 0;
-    for (const Record& f : system.beads.force) {
-      total += Vector3d(f.x, f.y, f.z);
-      largest = std::max(largest, Vector3d(f.x, f.y, f.z).norm());
-    }
+    std::size_t count = 0;
+    for (const AlignedVector<Record>* forces : {&system.beads.force, &sorted.bodies.beads().liquid_force})
+      for (const Record& f : *forces) {
+        total += Vector3d(f.x, f.y, f.z);
+        largest = std::max(largest, Vector3d(f.x, f.y, f.z).norm());
+        ++count;
+      }
     // Every pair force is antisymmetric to the last bit; only the sums round: sqrt(N) times 2^-23 of the
     // largest.
-    EXPECT_LE(total.norm(),
-              30 * largest * 1.2e-7 * std::sqrt(1.0 + static_cast<double>(system.beads.size())));
+    EXPECT_LE(total.norm(), 30 * largest * 1.2e-7 * std::sqrt(1.0 + static_cast<double>(count)));
   }
 }
 

@@ -45,13 +45,10 @@ void jiggle(System& system) {
 
 IdPairs found_in_range(System& system, const std::string& kernel) {
   IdPairs found;
-  const PlaneWall wall = wall_of(system);
-  Pairs pairs(system.parameters);
-  const Forces forces(system.parameters, kernel);
-  pairs.rebuild(system.beads, wall);
+  Sorted sorted(system, kernel);
   jiggle(system);
-  forces.density(system.beads, wall, pairs);
-  for (const NeighbourBlock& block : pairs.blocks())
+  sorted.forces.density(system.beads, sorted.wall, sorted.bodies, sorted.pairs);
+  for (const NeighbourBlock& block : sorted.pairs.blocks())
     for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
       EXPECT_TRUE(found.insert({system.beads.id[i], system.beads.id[j]}).second) << "found twice";
     });

@@ -85,12 +85,9 @@ TEST(Thermostat, IsTheMatrixPolynomialThatItClaims) {
   for (const std::string& kernel : available_kernels()) {
     SCOPED_TRACE(kernel);
     System system = wet_corner(0.02);
-    const PlaneWall wall = wall_of(system);
-    Pairs pairs(system.parameters);
-    const Forces forces(system.parameters, kernel);
-    pairs.rebuild(system.beads, wall);
-    const Dense before = dense(system, wall);
-    thermostat(system.beads, wall, pairs, forces, system.parameters);
+    Sorted sorted(system, kernel);
+    const Dense before = dense(system, sorted.wall);
+    thermostat(system.beads, sorted.wall, sorted.bodies, sorted.pairs, sorted.forces, system.parameters);
     // P = 1 - 2 A (1 - 0.8 A), Q = 1 - 0.9 A + 0.395 A^2 (thermostat.h)
     const Eigen::VectorXd av = before.a * before.velocity, an = before.a * before.noise;
     const Eigen::VectorXd expected =
@@ -104,12 +101,9 @@ TEST(Thermostat, ComesCloseToTheImplicitMidpointRule) {
   // That rule solves (1 + A) v+ = (1 - A) v + N. P and Q differ from its functions of A by a few percent of
   // the impulse in the stiffest modes.
   System system = wet_corner(0.01);
-  const PlaneWall wall = wall_of(system);
-  Pairs pairs(system.parameters);
-  const Forces forces(system.parameters, "auto");
-  pairs.rebuild(system.beads, wall);
-  const Dense before = dense(system, wall);
-  thermostat(system.beads, wall, pairs, forces, system.parameters);
+  Sorted sorted(system, "auto");
+  const Dense before = dense(system, sorted.wall);
+  thermostat(system.beads, sorted.wall, sorted.bodies, sorted.pairs, sorted.forces, system.parameters);
   const Eigen::VectorXd implicit = (Eigen::MatrixXd::Identity(before.a.rows(), before.a.cols()) + before.a)
                                        .ldlt()
                                        .solve(before.velocity - before.a * before.velocity + before.noise);
@@ -124,10 +118,7 @@ TEST(Thermostat, KeepsTheMaxwellDistributionOverFrozenBeads) {
   parameters.time_step = large_step;
   System system{"frozen", parameters, {}};
   scatter_beads(system, 6, {0, 0, 0}, {8, 8, 8}, [](const Vector3d&) { return true; });
-  const PlaneWall wall = wall_of(system);
-  Pairs pairs(parameters);
-  const Forces forces(parameters, "auto");
-  pairs.rebuild(system.beads, wall);
+  Sorted sorted(system, "auto");
   double temperature = 0;
   constexpr int warm_up = 50, looks = 400;
   for (int k = 0; k < warm_up + looks; ++k) {
@@ -136,7 +127,7 @@ TEST(Thermostat, KeepsTheMaxwellDistributionOverFrozenBeads) {
       const std::uint32_t word = bead_key(key, system.beads.id[i]);
       std::memcpy(&system.beads.position[i].w, &word, sizeof word);
     }
-    thermostat(system.beads, wall, pairs, forces, parameters);
+    thermostat(system.beads, sorted.wall, sorted.bodies, sorted.pairs, sorted.forces, parameters);
     if (k < warm_up) continue;
     for (const Record& v : system.beads.velocity)
       temperature += vector_of(v).squaredNorm() / (3.0 * looks * system.beads.size());

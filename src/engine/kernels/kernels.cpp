@@ -1,14 +1,16 @@
 // The two loops over pairs, compiled once per instruction set and chosen at run time.
 //
-// No list of neighbours is kept. Beads are sorted by cell now and then; every step, for every cell,
-//
-//   pack     beads of the cells around it that lie within r_c of the box around the cell's beads: side by
-//   side sweep    each bead of the cell over them, a register at a time: who is in range, which slots (16
-//   bits each) density  from the distances that the sweep kept
-//
-// and, once all densities are known, the force pass goes over the slots in range. Packing and sweeping a
-// whole neighbourhood costs less than filtering lists with a skin and building them anew every third step
+// No list of neighbours is kept. Beads are sorted by cell now and then; every step, for every cell:
+// - pack: beads of the cells around it that lie within r_c of the box around its beads, side by side;
+// - sweep: each of its beads over them, a register at a time: who is in range, as slots of 16 bits;
+// - density: from the distances that the sweep kept.
+// Once all densities are known, the force pass goes over the slots in range. Packing and sweeping a whole
+// neighbourhood costs less than filtering lists with a skin and building them anew every third step
 // (docs/performance.md).
+//
+// Wall beads and beads of microparticles near a cell come after its liquid, each kind packed and swept by
+// itself. What the liquid does to a microparticle is found from the other side: its beads form cells of
+// their own, with runs of liquid around them.
 #include "engine/kernels/kernels.h"
 
 #include <fmt/format.h>
@@ -26,6 +28,7 @@
 
 #include "engine/kernels/lanes-inl.h"
 #include "engine/kernels/packed.h"
+#include "engine/kernels/sweep-inl.h"
 #include "engine/noise-inl.h"
 #include "engine/pair_law-inl.h"
 
@@ -40,114 +43,6 @@ HWY_INLINE MdpdLaw<Lanes> in_lanes(const MdpdLaw<double>& law) {
           lanes(law.inverse_repulsion_radius),
           lanes(law.friction),
           lanes(law.random_amplitude)};
-}
-
-HWY_INLINE Lanes squared_length(Lanes x, Lanes y, Lanes z) { return x * x + y * y + z * z; }
-
-/// Closer than this is the bead itself. Two beads in the same place do not feel each other, instead of an
-/// infinite force.
-constexpr float smallest_squared_distance = 1e-12f;
-constexpr float far_away = 1e15f;
-
-// ---- pack and sweep: who is in range ----
-
-/// Where the beads of a cell are.
-struct Box {
-  float middle[3], half[3];
-};
-
-HWY_INLINE Box box_around(const Record* beads, std::uint32_t begin, std::uint32_t end) {
-  float lower[3] = {far_away, far_away, far_away}, upper[3] = {-far_away, -far_away, -far_away};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const float at[3] = {beads[i].x, beads[i].y, beads[i].z};
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], at[axis]);
-      upper[axis] = std::max(upper[axis], at[axis]);
-    }
-  }
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.middle[axis] = 0.5f * (lower[axis] + upper[axis]);
-    // The hair more covers the rounding of this and of the distances to it.
-    box.half[axis] = 0.5f * (upper[axis] - lower[axis]) + 1e-3f;
-  }
-  return box;
-}
-
-/// Distance from the box along one axis.
-HWY_INLINE Lanes outside(Lanes at, float middle, float half) {
-  return maximum(absolute(at - Lanes(middle)) - Lanes(half), Lanes(0));
-}
-
-/// Packs the beads of `runs` that lie within the cutoff radius of the box. What names a packed bead is its
-/// slot, or its index when `by_index`.
-/// @returns how many; whole lanes behind them are far away.
-template <bool by_index>
-HWY_INLINE std::size_t pack(const Record* beads, const BeadRun* run, const BeadRun* end,
-                            const PeriodicImages& images, const Box& box, Lanes squared_cutoff,
-                            const Packed& to) {
-  std::size_t count = 0;
-  std::uint32_t slot = 0;
-  for (; run != end; slot += run->end - run->begin, ++run) {
-    const Eigen::Vector3f& shift = images.shift(run->image);
-    const Lanes shift_x(shift.x()), shift_y(shift.y()), shift_z(shift.z());
-    UnsignedLanes name = UnsignedLanes(by_index ? run->begin : slot) + lane_numbers();
-    for (std::uint32_t j = run->begin; j < run->end; j += lane_count) {
-      Lanes x, y, z;
-      load_consecutive(beads + j, x, y, z);
-      x = x + shift_x;
-      y = y + shift_y;
-      z = z + shift_z;
-      const Lanes squared_distance =
-          squared_length(outside(x, box.middle[0], box.half[0]), outside(y, box.middle[1], box.half[1]),
-                         outside(z, box.middle[2], box.half[2]));
-      const Selection near(both(first_lanes(run->end - j), squared_distance < squared_cutoff));
-      append(x, near, to.x + count);
-      append(y, near, to.y + count);
-      append(z, near, to.z + count);
-      append(name, near, to.name + count);
-      count += near.count();
-      name = name + UnsignedLanes(static_cast<std::uint32_t>(lane_count));
-    }
-  }
-  store_lanes(Lanes(far_away), to.x + count);
-  return count;
-}
-
-/// What a sweep looks for, as squared distances.
-struct Ranges {
-  Lanes cutoff, repulsion;
-};
-
-/// Who of the packed beads is in range of `bead`: appends their names to `names` and, for the density, the
-/// squared distances of those in the range of the repulsion to `squared_distances`. Writes whole lanes.
-/// @returns how many names; adds to `distances` how many distances.
-template <bool with_distances, class Name>
-HWY_INLINE std::size_t sweep(const Packed& packed, std::size_t packed_count, const Record& bead,
-                             const Ranges& ranges, Name* names, float* squared_distances,
-                             std::size_t& distances) {
-  const Lanes at_x(bead.x), at_y(bead.y), at_z(bead.z);
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < packed_count; k += lane_count) {
-    const Lanes r2 = squared_length(at_x - load_lanes(packed.x + k), at_y - load_lanes(packed.y + k),
-                                    at_z - load_lanes(packed.z + k));
-    const Mask another = Lanes(smallest_squared_distance) < r2;
-    const Selection in_range(both(another, r2 < ranges.cutoff));
-    append(load_lanes(packed.name + k), in_range, names + found);
-    found += in_range.count();
-    if constexpr (with_distances) {
-      const Selection repelled(both(another, r2 < ranges.repulsion));
-      append(r2, repelled, squared_distances + distances);
-      distances += repelled.count();
-    }
-  }
-  return found;
-}
-
-HWY_INLINE Ranges ranges_of(const MdpdLaw<double>& law) {
-  const auto squared = [](double inverse)
-                           HWY_ATTR { return Lanes(static_cast<float>(1.0 / (inverse * inverse))); };
-  return {squared(law.inverse_cutoff_radius), squared(law.inverse_repulsion_radius)};
 }
 
 // ---- density ----
@@ -170,6 +65,24 @@ HWY_INLINE float density_from(const float* squared_distances, std::size_t count,
     density.add(k, zero_unless(first_lanes(count - k), weight));
   }
   return density.total(0);
+}
+
+/// Adds to the densities (w of `moving`) of a cell's beads what beads of another kind near them count.
+HWY_INLINE void add_density(const PairPass& pass, const NeighbourCell& cell, const Record* own,
+                            Record* moving, const Record* others, const BeadRun* run, const BeadRun* end,
+                            const Packed& packed) {
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
+  const Ranges ranges = ranges_of(law);
+  const std::size_t candidates =
+      pack<true>(others, run, end, pass.images, box_around(own, cell.begin, cell.end), ranges.cutoff, packed);
+  for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+    std::size_t distances = 0;
+    sweep<true>(packed, candidates, own[bead], ranges, packed.foreign_in_range, packed.squared_distance,
+                distances);
+    moving[bead].w += static_cast<float>(pass.density_normalization) *
+                      density_from(packed.squared_distance, distances,
+                                   Lanes(static_cast<float>(law.inverse_repulsion_radius)));
+  }
 }
 
 void density(const PairPass& pass, NeighbourBlock& block) {
@@ -200,11 +113,25 @@ void density(const PairPass& pass, NeighbourBlock& block) {
           static_cast<float>(pass.density_normalization) *
           density_from(packed.squared_distance + first[0], first[1] - first[0], inverse_repulsion_radius);
     }
+    if (cell.first_body_run < cell.end_body_run && pass.bodies.counted_by_liquid)
+      add_density(pass, cell, pass.position, pass.predicted, pass.bodies.position,
+                  &block.body_runs[cell.first_body_run], block.body_runs.data() + cell.end_body_run, packed);
   }
   block.in_range_begin[block.end - block.begin] = static_cast<std::uint32_t>(used);
   // The force pass loads whole lanes: behind the last row, too, slots must exist.
   make_room(block.in_range, used, 0);
   std::fill_n(block.in_range.begin() + used, 2 * lane_count, std::uint16_t{0});
+}
+
+void body_density(const PairPass& pass, const NeighbourBlock& block) {
+  const Packed packed = Workbench::of_this_thread().room_for(block);
+  for (const NeighbourCell& cell : block.cells) {
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead)
+      pass.bodies.moving[bead].w = pass.bodies.own_density[bead];
+    if (cell.first_run < cell.end_run && pass.bodies.count_liquid)
+      add_density(pass, cell, pass.bodies.position, pass.bodies.moving, pass.position,
+                  &block.runs[cell.first_run], block.runs.data() + cell.end_run, packed);
+  }
 }
 
 // ---- force ----
@@ -229,52 +156,117 @@ HWY_INLINE Separation separation(const PairPass& pass, const Record& i, Lanes x,
   return d;
 }
 
+/// The bead that the forces are summed for.
+struct Receiver {
+  const Record& position;
+  const Record& moving;  ///< velocity; w: density
+  UnsignedLanes key;
+};
+
+/// What it meets at the other ends of some pairs, a pair a lane.
+struct Partners {
+  Lanes x, y, z, vx, vy, vz, density, attraction;
+  UnsignedLanes key;
+};
+
+/// Liquid met by liquid, in slots.
+struct LiquidInSlots {
+  const PairPass& pass;
+  SlotsOfBeads slots;
+  Lanes attraction;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j;
+    Lanes key;
+    load_records(pass.position, slots.from(k), j.x, j.y, j.z, key);
+    load_records(pass.predicted, slots.from(k), j.vx, j.vy, j.vz, j.density);
+    j.attraction = attraction;
+    j.key = bits_of(key);
+    return j;
+  }
+};
+
+/// Liquid met by a microparticle's bead, which says how much it attracts.
+struct Liquid {
+  const PairPass& pass;
+  const std::uint32_t* indices;
+  Lanes attraction;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j;
+    Lanes key;
+    load_records(pass.position, BeadIndices{indices + k}, j.x, j.y, j.z, key);
+    load_records(pass.predicted, BeadIndices{indices + k}, j.vx, j.vy, j.vz, j.density);
+    j.attraction = attraction;
+    j.key = bits_of(key);
+    return j;
+  }
+};
+
+/// Beads of microparticles met by liquid.
+struct BodyBeads {
+  const PairPass& pass;
+  const std::uint32_t* indices;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j;
+    load_records(pass.bodies.position, BeadIndices{indices + k}, j.x, j.y, j.z, j.attraction);
+    load_records(pass.bodies.moving, BeadIndices{indices + k}, j.vx, j.vy, j.vz, j.density);
+    j.key = body_key(load_lanes(indices + k));
+    return j;
+  }
+};
+
+/// Wall beads: they rest, and count in no density.
+struct WallBeads {
+  const PairPass& pass;
+  const std::uint32_t* indices;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j;
+    load_records(pass.wall, BeadIndices{indices + k}, j.x, j.y, j.z, j.attraction);
+    j.vx = j.vy = j.vz = j.density = Lanes(0);
+    j.key = wall_key(load_lanes(indices + k));
+    return j;
+  }
+};
+
+/// Wall beads met by a microparticle: they all attract it alike.
+struct WallUnderBody {
+  WallBeads beads;
+  Lanes attraction;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j = beads.load(k);
+    j.attraction = attraction;
+    return j;
+  }
+};
+
 using ForceSum = LaneSums<3>;
 
-HWY_INLINE void add_force(ForceSum& total, std::size_t k, const Separation& d, Lanes magnitude_over_r) {
-  total.add(k, magnitude_over_r * d.x, magnitude_over_r * d.y, magnitude_over_r * d.z);
-}
-
-template <PairForce part, bool across_periodic>
-HWY_INLINE void liquid_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
-                             const SlotsOfBeads& in_range, std::size_t count, ForceSum& total) {
-  const Record& i = pass.position[bead];
-  const Record& moving = pass.predicted[bead];
-  const UnsignedLanes key_i = bits_of(Lanes(i.w));
+template <PairForce part, bool across_periodic, class Others>
+HWY_INLINE void add_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
+                           const Others& others, std::size_t count, ForceSum& total) {
   for (std::size_t k = 0; k < count; k += lane_count) {
-    Lanes x, y, z, key, vx, vy, vz, density;
-    load_records(pass.position, in_range.from(k), x, y, z, key);
-    load_records(pass.predicted, in_range.from(k), vx, vy, vz, density);
-    const Separation d = separation<across_periodic>(pass, i, x, y, z);
+    const Partners j = others.load(k);
+    const Separation d = separation<across_periodic>(pass, i.position, j.x, j.y, j.z);
     const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
-    const Lanes approach =
-        (d.x * (Lanes(moving.x) - vx) + d.y * (Lanes(moving.y) - vy) + d.z * (Lanes(moving.z) - vz)) *
-        inverse_r;
-    const Lanes zeta = pair_noise<Lanes>(key_i, bits_of(key));
-    const Lanes force = pair_force<part>(law, law.attraction, r, Lanes(moving.w) + density, approach, zeta);
-    add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
+    const Lanes approach = (d.x * (Lanes(i.moving.x) - j.vx) + d.y * (Lanes(i.moving.y) - j.vy) +
+                            d.z * (Lanes(i.moving.z) - j.vz)) *
+                           inverse_r;
+    const Lanes zeta = pair_noise<Lanes>(i.key, j.key);
+    const Lanes force = pair_force<part>(law, j.attraction, r, Lanes(i.moving.w) + j.density, approach, zeta);
+    const Lanes over_r = zero_unless(first_lanes(count - k), force * inverse_r);
+    total.add(k, over_r * d.x, over_r * d.y, over_r * d.z);
   }
 }
 
-template <PairForce part, bool across_periodic>
-HWY_INLINE void wall_force(const PairPass& pass, const MdpdLaw<Lanes>& law, std::uint32_t bead,
-                           const std::uint32_t* in_range, std::size_t count, ForceSum& total) {
-  const Record& i = pass.position[bead];
-  const Record& moving = pass.predicted[bead];
-  const UnsignedLanes key_i = bits_of(Lanes(i.w));
-  for (std::size_t k = 0; k < count; k += lane_count) {
-    Lanes x, y, z, attraction;
-    load_records(pass.wall, BeadIndices{in_range + k}, x, y, z, attraction);
-    const Separation d = separation<across_periodic>(pass, i, x, y, z);
-    const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
-    const Lanes inverse_r = Lanes(1) / r;
-    const Lanes approach =
-        (d.x * Lanes(moving.x) + d.y * Lanes(moving.y) + d.z * Lanes(moving.z)) * inverse_r;
-    const Lanes zeta = pair_noise<Lanes>(key_i, wall_key(load_lanes(in_range + k)));
-    const Lanes force = pair_force<part>(law, attraction, r, Lanes(moving.w), approach, zeta);
-    add_force(total, k, d, zero_unless(first_lanes(count - k), force * inverse_r));
-  }
+/// Names of the packed beads in range of `bead`, in packed.foreign_in_range. @returns how many.
+HWY_INLINE std::size_t find_foreign(const Packed& packed, std::size_t candidates, const Record& bead,
+                                    const Ranges& ranges) {
+  std::size_t no_distances = 0;
+  const std::size_t count =
+      sweep<false>(packed, candidates, bead, ranges, packed.foreign_in_range, nullptr, no_distances);
+  // Whole lanes are loaded: what stands behind the last must name a bead.
+  store_lanes(UnsignedLanes(0), packed.foreign_in_range + count);
+  return count;
 }
 
 /// Writes the index of the bead in each slot. Behind the last slot stands a bead that exists: whole lanes are
@@ -305,37 +297,99 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
   number_slots(&block.runs[cell.first_run], block.runs.data() + cell.end_run, packed.bead_in_slot);
   for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
     ForceSum total;
+    const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
                                 packed.bead_in_slot};
-    liquid_force<part, across_periodic>(pass, law, bead, in_range, block.in_range_count(bead), total);
+    add_forces<part, across_periodic>(pass, law, i, LiquidInSlots{pass, in_range, law.attraction},
+                                      block.in_range_count(bead), total);
     if (wall_candidates > 0) {
-      std::size_t no_distances = 0;
-      const std::size_t count = sweep<false>(packed, wall_candidates, pass.position[bead], wall_ranges,
-                                             packed.wall_in_range, nullptr, no_distances);
-      // Whole lanes are loaded: what stands behind the last must name a bead.
-      store_lanes(UnsignedLanes(0), packed.wall_in_range + count);
-      wall_force<part, across_periodic>(pass, wall_law, bead, packed.wall_in_range, count, total);
+      const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
+      add_forces<part, across_periodic>(pass, wall_law, i, WallBeads{pass, packed.foreign_in_range}, count,
+                                        total);
     }
     pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
+  }
+}
+
+HWY_INLINE void add_to(Record& force, const ForceSum& total) {
+  force.x += total.total(0);
+  force.y += total.total(1);
+  force.z += total.total(2);
+}
+
+/// Adds what the microparticles near a cell do to its liquid.
+template <PairForce part>
+HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
+                                const Packed& packed) {
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
+  const Ranges ranges = ranges_of(law);
+  const std::size_t candidates = pack<true>(
+      pass.bodies.position, &block.body_runs[cell.first_body_run], block.body_runs.data() + cell.end_body_run,
+      pass.images, box_around(pass.position, cell.begin, cell.end), ranges.cutoff, packed);
+  for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+    ForceSum total;
+    const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
+    const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
+    add_forces<part, true>(pass, in_lanes(law), i, BodyBeads{pass, packed.foreign_in_range}, count, total);
+    add_to(pass.force[bead], total);
   }
 }
 
 template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const Packed packed = Workbench::of_this_thread().room_for(block);
-  for (const NeighbourCell& cell : block.cells)
+  for (const NeighbourCell& cell : block.cells) {
     if (cell.across_periodic)
       force_on_cell<part, true>(pass, block, cell, packed);
     else
       force_on_cell<part, false>(pass, block, cell, packed);
+    if (cell.first_body_run < cell.end_body_run) add_body_forces<part>(pass, block, cell, packed);
+  }
+}
+
+/// What liquid and wall do to the beads of microparticles, each by itself.
+void body_force(const PairPass& pass, const NeighbourBlock& block) {
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
+  const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
+  const Ranges ranges = ranges_of(law), wall_ranges = ranges_of(wall_law);
+  const Packed packed = Workbench::of_this_thread().room_for(block);
+  for (const NeighbourCell& cell : block.cells) {
+    const Box box = box_around(pass.bodies.position, cell.begin, cell.end);
+    const auto receiver = [&](std::uint32_t bead) HWY_ATTR {
+      return Receiver{pass.bodies.position[bead], pass.bodies.moving[bead], body_key(UnsignedLanes(bead))};
+    };
+    std::size_t candidates =
+        pack<true>(pass.position, block.runs.data() + cell.first_run, block.runs.data() + cell.end_run,
+                   pass.images, box, ranges.cutoff, packed);
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      ForceSum total;
+      const Receiver i = receiver(bead);
+      const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
+      add_forces<PairForce::all, true>(
+          pass, in_lanes(law), i, Liquid{pass, packed.foreign_in_range, Lanes(i.position.w)}, count, total);
+      pass.bodies.liquid_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
+    }
+    candidates =
+        pack<true>(pass.wall, block.wall_runs.data() + cell.first_wall_run,
+                   block.wall_runs.data() + cell.end_wall_run, pass.images, box, wall_ranges.cutoff, packed);
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      ForceSum total;
+      const Receiver i = receiver(bead);
+      const std::size_t count = find_foreign(packed, candidates, i.position, wall_ranges);
+      const WallUnderBody wall{{pass, packed.foreign_in_range},
+                               Lanes(static_cast<float>(wall_law.attraction))};
+      add_forces<PairForce::conservative, true>(pass, in_lanes(wall_law), i, wall, count, total);
+      pass.bodies.wall_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
+    }
+  }
 }
 
 Kernels table() {
-  return {hwy::TargetName(HWY_TARGET),
-          lane_count,
-          &density,
+  return {&density,
           {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
-           &force<PairForce::friction>}};
+           &force<PairForce::friction>},
+          &body_density,
+          &body_force};
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE

@@ -11,12 +11,23 @@
 
 namespace dmf::engine {
 
+/// Beads of microparticles, as the loops over pairs read and write them.
+struct BodyPass {
+  const Record* position = nullptr;    ///< x, y, z, A_ls
+  Record* moving = nullptr;            ///< velocities; density pass writes w = rho
+  const float* own_density = nullptr;  ///< what the beads of its own body count in rho
+  Record* liquid_force = nullptr;      ///< force pass writes
+  Record* wall_force = nullptr;        ///< force pass writes
+  bool count_liquid = true, counted_by_liquid = true;
+};
+
 /// What the two loops over pairs read and write.
 struct PairPass {
   const Record* position;        ///< x, y, z, key
   Record* predicted;             ///< velocities; density pass writes w = rho
   Record* force;                 ///< force pass writes
   const Record* wall = nullptr;  ///< x, y, z, A_lw
+  BodyPass bodies;
   PairTable laws;
   double density_normalization = 0;
   PeriodicImages images;
@@ -27,11 +38,12 @@ struct PairPass {
 /// The loops that cost time, for one instruction set. The physics in them stands in pair_law-inl.h and
 /// noise-inl.h.
 struct Kernels {
-  const char* name;
-  std::size_t lanes;
   void (*density)(const PairPass&, NeighbourBlock&);  ///< rho of the block's beads, and who is in range
   /// By PairForce. `all` and `conservative` need the density of all beads.
   std::array<void (*)(const PairPass&, const NeighbourBlock&), 4> force;
+  /// The same for a block of beads of microparticles.
+  void (*body_density)(const PairPass&, const NeighbourBlock&);
+  void (*body_force)(const PairPass&, const NeighbourBlock&);
 };
 
 /// Names that this processor can run, best first.

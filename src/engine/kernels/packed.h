@@ -11,13 +11,13 @@ namespace dmf::engine {
 
 /// What the kernels lay side by side while they work on one cell. Whole lanes are written behind each array.
 struct Packed {
-  float *x, *y, *z;               ///< beads near the cell
-  std::uint32_t* name;            ///< and which they are
-  float* squared_distance;        ///< of the pairs of all beads of the cell, row after row
-  std::uint16_t* in_range;        ///< slots, likewise
-  std::uint32_t* first_distance;  ///< of each bead of the cell, and the end
-  std::uint32_t* bead_in_slot;    ///< 0 until numbered
-  std::uint32_t* wall_in_range;
+  float *x, *y, *z;                 ///< beads near the cell
+  std::uint32_t* name;              ///< and which they are
+  float* squared_distance;          ///< of the pairs of all beads of the cell, row after row
+  std::uint16_t* in_range;          ///< slots, likewise
+  std::uint32_t* first_distance;    ///< of each bead of the cell, and the end
+  std::uint32_t* bead_in_slot;      ///< 0 until numbered
+  std::uint32_t* foreign_in_range;  ///< wall or microparticles
 };
 
 /// Memory of one thread for what is packed.
@@ -37,7 +37,8 @@ class Workbench {
   Packed room_for(const NeighbourBlock& block) {
     std::size_t beads = 0;
     for (const NeighbourCell& cell : block.cells) beads = std::max<std::size_t>(beads, cell.end - cell.begin);
-    const std::size_t near = std::max(block.slots, block.wall_slots), pairs = beads * block.slots;
+    const std::size_t near = std::max({block.slots, block.wall_slots, block.body_slots});
+    const std::size_t pairs = std::max<std::size_t>(beads, 1) * near;
     Packed packed;
     // Once to count, once to deal out.
     for (const bool counting : {true, false}) {
@@ -55,7 +56,7 @@ class Workbench {
       deal(packed.in_range, pairs, 3072);
       deal(packed.first_distance, beads + 1, 0);
       deal(packed.bead_in_slot, near, 0);
-      deal(packed.wall_in_range, near, 1024);
+      deal(packed.foreign_in_range, near, 1024);
       if (memory_.size() < used) memory_.resize(used);
     }
     std::fill_n(packed.bead_in_slot, near + most_lanes, 0u);

@@ -10,6 +10,7 @@
 namespace dmf::engine {
 namespace {
 
+using HWY_NAMESPACE::body_key;
 using HWY_NAMESPACE::density_weight;
 using HWY_NAMESPACE::pair_force;
 using HWY_NAMESPACE::pair_noise;
@@ -44,68 +45,139 @@ void for_each_in_range(const PairPass& pass, const Record* beads, const BeadRun*
     }
 }
 
+/// What the beads of `runs` count in the density of a bead at `at`.
+double counted(const PairPass& pass, const Record* beads, const BeadRun* run, const BeadRun* end,
+               const Record& at) {
+  const double inverse_radius = pass.laws(Species::liquid, Species::liquid).inverse_repulsion_radius;
+  double total = 0;
+  for_each_in_range(pass, beads, run, end, at, 1.0 / inverse_radius,
+                    [&](std::uint32_t, std::uint32_t, const Vector3d& d) {
+                      total += density_weight(d.norm(), inverse_radius);
+                    });
+  return pass.density_normalization * total;
+}
+
 void density(const PairPass& pass, NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   block.in_range.clear();
   block.in_range_begin.assign(1, 0);
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
-      double total = 0;
-      for_each_in_range(pass, pass.position, block.runs.data() + cell.first_run,
-                        block.runs.data() + cell.end_run, pass.position[bead],
-                        1.0 / law.inverse_cutoff_radius,
-                        [&](std::uint32_t, std::uint32_t slot, const Vector3d& d) {
-                          total += density_weight(d.norm(), law.inverse_repulsion_radius);
+      const BeadRun *run = block.runs.data() + cell.first_run, *end = block.runs.data() + cell.end_run;
+      for_each_in_range(pass, pass.position, run, end, pass.position[bead], 1.0 / law.inverse_cutoff_radius,
+                        [&](std::uint32_t, std::uint32_t slot, const Vector3d&) {
                           block.in_range.push_back(static_cast<std::uint16_t>(slot));
                         });
       block.in_range_begin.push_back(static_cast<std::uint32_t>(block.in_range.size()));
-      pass.predicted[bead].w = static_cast<float>(pass.density_normalization * total);
+      double total = counted(pass, pass.position, run, end, pass.position[bead]);
+      if (pass.bodies.counted_by_liquid)
+        total += counted(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
+                         block.body_runs.data() + cell.end_body_run, pass.position[bead]);
+      pass.predicted[bead].w = static_cast<float>(total);
     }
+}
+
+void body_density(const PairPass& pass, const NeighbourBlock& block) {
+  for (const NeighbourCell& cell : block.cells)
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      double total = pass.bodies.own_density[bead];
+      if (pass.bodies.count_liquid)
+        total += counted(pass, pass.position, block.runs.data() + cell.first_run,
+                         block.runs.data() + cell.end_run, pass.bodies.position[bead]);
+      pass.bodies.moving[bead].w = static_cast<float>(total);
+    }
+}
+
+/// One end of a pair.
+struct End {
+  Vector3d velocity = Vector3d::Zero();
+  double density = 0;
+  std::uint32_t key = 0;
+};
+End liquid_end(const PairPass& pass, std::uint32_t i) {
+  return {velocity_of(pass.predicted[i]), pass.predicted[i].w, key_bits(pass.position[i].w)};
+}
+End body_end(const PairPass& pass, std::uint32_t i) {
+  return {velocity_of(pass.bodies.moving[i]), pass.bodies.moving[i].w, body_key(i)};
+}
+End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
+
+template <PairForce part>
+Vector3d force_between(const MdpdLaw<double>& law, double attraction, const Vector3d& d, const End& i,
+                       const End& j) {
+  const double r = std::max(d.norm(), 1e-6);
+  const double approach = d.dot(i.velocity - j.velocity) / r;
+  const double zeta = pair_noise<double>(i.key, j.key);
+  return pair_force<part>(law, attraction, r, i.density + j.density, approach, zeta) / r * d;
+}
+
+Record record_of(const Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
 template <PairForce part>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
+  const MdpdLaw<double>& body_law = pass.laws(Species::liquid, Species::microparticle);
   std::vector<Vector3d> total(block.end - block.begin, Vector3d::Zero());
   for_each_pair_in_range(block, [&](std::uint32_t bead, std::uint32_t other) {
-    const Record &i = pass.position[bead], &j = pass.position[other];
-    const Record &moving = pass.predicted[bead], &other_moving = pass.predicted[other];
-    const Vector3d d = separation(pass, i, j);
-    const double r = std::max(d.norm(), 1e-6);
-    const double approach = d.dot(velocity_of(moving) - velocity_of(other_moving)) / r;
-    const double zeta = pair_noise<double>(key_bits(i.w), key_bits(j.w));
-    const double density_sum = double(moving.w) + other_moving.w;
     total[bead - block.begin] +=
-        pair_force<part>(law, law.attraction, r, density_sum, approach, zeta) / r * d;
+        force_between<part>(law, law.attraction, separation(pass, pass.position[bead], pass.position[other]),
+                            liquid_end(pass, bead), liquid_end(pass, other));
   });
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
-      const Record &i = pass.position[bead], &moving = pass.predicted[bead];
+      const Record& at = pass.position[bead];
       Vector3d& sum = total[bead - block.begin];
       for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
-                        block.wall_runs.data() + cell.end_wall_run, i, 1.0 / wall_law.inverse_cutoff_radius,
+                        block.wall_runs.data() + cell.end_wall_run, at, 1.0 / wall_law.inverse_cutoff_radius,
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          const double r = std::max(d.norm(), 1e-6);
-                          const double approach = d.dot(velocity_of(moving)) / r;
-                          const double zeta = pair_noise<double>(key_bits(i.w), wall_key(other));
-                          sum += pair_force<part>(wall_law, double(pass.wall[other].w), r, double(moving.w),
-                                                  approach, zeta) /
-                                 r * d;
+                          sum += force_between<part>(wall_law, pass.wall[other].w, d, liquid_end(pass, bead),
+                                                     wall_end(other));
                         });
-      pass.force[bead] = {static_cast<float>(sum.x()), static_cast<float>(sum.y()),
-                          static_cast<float>(sum.z()), 0};
+      for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
+                        block.body_runs.data() + cell.end_body_run, at, 1.0 / body_law.inverse_cutoff_radius,
+                        [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+                          sum += force_between<part>(body_law, pass.bodies.position[other].w, d,
+                                                     liquid_end(pass, bead), body_end(pass, other));
+                        });
+      pass.force[bead] = record_of(sum);
+    }
+}
+
+void body_force(const PairPass& pass, const NeighbourBlock& block) {
+  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
+  const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
+  for (const NeighbourCell& cell : block.cells)
+    for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      const Record& at = pass.bodies.position[bead];
+      Vector3d of_liquid = Vector3d::Zero(), of_wall = Vector3d::Zero();
+      for_each_in_range(
+          pass, pass.position, block.runs.data() + cell.first_run, block.runs.data() + cell.end_run, at,
+          1.0 / law.inverse_cutoff_radius, [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+            of_liquid +=
+                force_between<PairForce::all>(law, at.w, d, body_end(pass, bead), liquid_end(pass, other));
+          });
+      for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
+                        block.wall_runs.data() + cell.end_wall_run, at, 1.0 / wall_law.inverse_cutoff_radius,
+                        [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+                          of_wall += force_between<PairForce::conservative>(
+                              wall_law, wall_law.attraction, d, body_end(pass, bead), wall_end(other));
+                        });
+      pass.bodies.liquid_force[bead] = record_of(of_liquid);
+      pass.bodies.wall_force[bead] = record_of(of_wall);
     }
 }
 
 }  // namespace
 
 Kernels reference_kernels() {
-  return {"reference",
-          1,
-          &density,
+  return {&density,
           {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
-           &force<PairForce::friction>}};
+           &force<PairForce::friction>},
+          &body_density,
+          &body_force};
 }
 
 }  // namespace dmf::engine

@@ -288,24 +288,12 @@ void DropletTracker::measure_angles(DropletObservation& droplet, const Component
 
 namespace {
 
-void archive_optional(Archive& archive, std::optional<double>& value) {
-  bool present = value.has_value();
-  double number = value.value_or(0.0);
-  archive(present);
-  archive(number);
-  value = present ? std::optional<double>(number) : std::nullopt;
-}
-
-void archive_vector(Archive& archive, Vector3d& vector) {
-  for (int axis = 0; axis < 3; ++axis) archive(vector[axis]);
-}
-
 void archive_droplet(Archive& archive, DropletObservation& droplet) {
   archive(droplet.id);
   archive(droplet.parents);
   archive(droplet.beads);
   for (Vector3d* vector : {&droplet.centroid, &droplet.velocity, &droplet.lower, &droplet.upper})
-    archive_vector(archive, *vector);
+    archive(*vector);
   archive(droplet.volume);
   archive(droplet.footprint_area);
   archive(droplet.height);
@@ -318,7 +306,7 @@ void archive_droplet(Archive& archive, DropletObservation& droplet) {
     droplet.footprint.emplace_back(corners[k], corners[k + 1]);
   for (std::optional<double>* angle :
        {&droplet.contact_angle, &droplet.advancing_angle, &droplet.receding_angle})
-    archive_optional(archive, *angle);
+    archive(*angle);
 }
 
 }  // namespace
@@ -334,7 +322,7 @@ void DropletTracker::archive(Archive& archive) {
   for (const std::uint32_t id : ids) {
     Memory& memory = memory_[id];
     archive(memory.parents);
-    archive_vector(archive, memory.velocity);
+    archive(memory.velocity);
     memory.angles.archive(archive);
   }
   std::uint64_t count = droplets_.size();

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/microparticle.h"
+
 namespace dmf::engine {
 
 using Eigen::Vector3d;
@@ -52,10 +54,11 @@ struct Snapshot {
   Vector3d momentum = Vector3d::Zero();
   std::size_t moving_beads = 0;
   std::size_t wall_beads = 0;
-  std::size_t vapour_beads = 0;              ///< moving beads that belong to no droplet
-  std::vector<DropletObservation> droplets;  ///< by id
-  std::optional<std::uint64_t> state_hash;   ///< when asked for
-  std::optional<Eigen::Matrix3d> virial;     ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
+  std::size_t vapour_beads = 0;                          ///< moving beads that belong to no droplet
+  std::vector<DropletObservation> droplets;              ///< by id
+  std::vector<MicroparticleObservation> microparticles;  ///< by id
+  std::optional<std::uint64_t> state_hash;               ///< when asked for
+  std::optional<Eigen::Matrix3d> virial;  ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
   // When beads are asked for, equally long, ordered by bead id:
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> velocities;

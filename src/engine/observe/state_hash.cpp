@@ -14,9 +14,26 @@ std::uint64_t fold(std::uint64_t hash, float a, float b) {
   return mix64(hash ^ (static_cast<std::uint64_t>(high) << 32 | low));
 }
 
+std::uint64_t fold(std::uint64_t hash, double a) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &a, sizeof bits);
+  return mix64(hash ^ bits);
+}
+
+std::uint64_t fold(std::uint64_t hash, const Microparticle& particle) {
+  const RigidBody& body = particle.body;
+  hash = mix64(hash ^ particle.id);
+  for (const Vector3d* vector :
+       {&body.position, &body.velocity, &body.angular_momentum, &particle.force, &particle.torque})
+    for (const double component : *vector) hash = fold(hash, component);
+  for (const double component : body.orientation.coeffs()) hash = fold(hash, component);
+  return hash;
+}
+
 }  // namespace
 
-std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const PlaneWall& wall) {
+std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const PlaneWall& wall,
+                         const Microparticles& bodies) {
   // A sum over beads does not know their order.
   std::uint64_t sum = mix64(step + 0x9e3779b97f4a7c15ull);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
@@ -32,6 +49,7 @@ std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const PlaneWall
   }
   std::uint64_t hash = mix64(sum);
   for (const Record& bead : wall.beads()) hash = fold(hash, bead.w, 0.f);
+  for (const Microparticle& particle : bodies.all()) hash = fold(hash, particle);
   return hash;
 }
 

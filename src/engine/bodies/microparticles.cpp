@@ -1,0 +1,393 @@
+#include "engine/bodies/microparticles.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bodies/shape.h"
+#include "engine/integrate.h"
+
+namespace dmf::engine {
+namespace {
+
+Record record_of(const Vector3d& v, float w) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), w};
+}
+
+Vector3d vector_of(const Record& record) { return {record.x, record.y, record.z}; }
+
+/// Two microparticles hold each other up to this distance between their surfaces, ever less, r_c.
+constexpr double adhesion_range = 0.1;
+
+/// Force that pushes two spheres apart (negative: pulls them together).
+double force_between(const MicroparticleParameters& model, double first_radius, double second_radius,
+                     double distance) {
+  const double gap = distance - first_radius - second_radius;
+  const double radius = first_radius * second_radius / (first_radius + second_radius);
+  const double adhesion =
+      model.particle_adhesion * 2.0 * radius * std::clamp(1.0 - gap / adhesion_range, 0.0, 1.0);
+  return (gap < 0 ? hertz_force(model.elastic_modulus, radius, -gap) : 0.0) - adhesion;
+}
+
+void require_sound(const MicroparticlePlacement& placement, const Parameters& parameters) {
+  const std::vector<std::string> found = violations(placement, parameters);
+  if (!found.empty()) throw InvalidInput(fmt::format("{}", fmt::join(found, "\n")));
+}
+
+/// Nearest that liquid may be to the surface of a microparticle when one of both is placed, r_c.
+constexpr double smallest_gap = 0.5;
+
+void require_apart(const Microparticle& particle, const std::vector<Vector3d>& liquid, const Domain& domain) {
+  for (const Vector3d& bead : liquid) {
+    const Vector3d from_centre = domain.nearest_image(bead - particle.body.position);
+    if (from_centre.norm() >= particle.bounding_radius + smallest_gap) continue;
+    for (const ContactSphere& sphere : particle.contact_spheres) {
+      const double gap = (from_centre - particle.body.orientation * sphere.offset).norm() - sphere.radius;
+      if (gap < smallest_gap)
+        throw InvalidInput(
+            fmt::format("microparticle at ({:.4g}, {:.4g}, {:.4g}): {:.3g} r_c from its "
+                        "surface to the liquid at ({:.4g}, {:.4g}, {:.4g}), allowed: {} or "
+                        "more",
+                        particle.body.position.x(), particle.body.position.y(), particle.body.position.z(),
+                        gap, bead.x(), bead.y(), bead.z(), smallest_gap));
+    }
+  }
+}
+
+}  // namespace
+
+Microparticles::Microparticles(const Parameters& parameters, const PlaneWall& wall)
+    : parameters_(parameters), wall_plane_(wall.plane()), has_wall_(parameters.domain.has_wall()) {}
+
+std::uint32_t Microparticles::add(const MicroparticlePlacement& placement,
+                                  const std::vector<Vector3d>& liquid, double smallest_mass) {
+  require_sound(placement, parameters_);
+  Microparticle particle = shaped(placement, parameters_);
+  if (particle.body.mass < smallest_mass)
+    throw InvalidInput(
+        fmt::format("microparticle.mass: {}, allowed: {:.4g} or more while the magnet pulls as "
+                    "it does",
+                    particle.body.mass, smallest_mass));
+  require_room(particle);
+  require_apart(particle, liquid, parameters_.domain);
+  particle.id = next_id_++;
+  particle.first_bead = static_cast<std::uint32_t>(beads_.size());
+  append_beads(particle);
+  place_beads(particle, Vector3d::Zero());
+  all_.push_back(std::move(particle));
+  return all_.back().id;
+}
+
+void Microparticles::remove(std::uint32_t id) {
+  const auto found = std::find_if(all_.begin(), all_.end(), [id](const auto& one) { return one.id == id; });
+  if (found == all_.end()) {
+    std::vector<std::uint32_t> known;
+    for (const Microparticle& one : all_) known.push_back(one.id);
+    throw InvalidInput(
+        fmt::format("microparticle {} does not exist; microparticles are [{}]", id, fmt::join(known, ", ")));
+  }
+  const std::uint32_t first = found->first_bead, count = found->bead_count();
+  const auto cut = [&](auto& array) { array.erase(array.begin() + first, array.begin() + first + count); };
+  cut(beads_.position);
+  cut(beads_.moving);
+  cut(beads_.liquid_force);
+  cut(beads_.wall_force);
+  cut(beads_.listed);
+  cut(beads_.own_density);
+  for (auto later = all_.erase(found); later != all_.end(); ++later) later->first_bead -= count;
+}
+
+void Microparticles::require_clear(const std::vector<Vector3d>& sites) const {
+  for (const Microparticle& particle : all_) require_apart(particle, sites, parameters_.domain);
+}
+
+void Microparticles::require_room(const Microparticle& particle) const {
+  const Domain& domain = parameters_.domain;
+  static const char* const axes = "xyz";
+  const auto centre_of = [](const Microparticle& one, const ContactSphere& sphere) -> Vector3d {
+    return one.body.position + one.body.orientation * sphere.offset;
+  };
+  for (const ContactSphere& sphere : particle.contact_spheres) {
+    const Vector3d centre = centre_of(particle, sphere);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (domain.periodic(axis)) {
+        const double needed = 2.0 * (particle.bounding_radius + parameters_.liquid.cutoff_radius);
+        if (domain.size()[axis] < needed)
+          throw InvalidInput(
+              fmt::format("microparticle: radius {}, allowed: {} or less, what fits into the "
+                          "period along {}",
+                          particle.bounding_radius,
+                          0.5 * domain.size()[axis] - parameters_.liquid.cutoff_radius, axes[axis]));
+        continue;
+      }
+      const double from = domain.lower[axis] + sphere.radius, to = domain.upper[axis] - sphere.radius;
+      const double tolerance = 0.01 * sphere.radius;
+      if (!(centre[axis] >= from - tolerance && centre[axis] <= to + tolerance))
+        throw InvalidInput(fmt::format(
+            "microparticle: center's {} {:.6g}, allowed: {:.6g} to {:.6g} for a radius of {} (r_c)",
+            axes[axis], centre[axis], from, to, sphere.radius));
+    }
+    for (const Microparticle& other : all_)
+      for (const ContactSphere& its : other.contact_spheres) {
+        const double distance = domain.nearest_image(centre - centre_of(other, its)).norm();
+        const double allowed = sphere.radius + its.radius;
+        if (distance < allowed)
+          throw InvalidInput(
+              fmt::format("microparticle: {:.6g} r_c from microparticle {}, allowed: {:.6g} or more, "
+                          "centre to centre",
+                          distance, other.id, allowed));
+      }
+  }
+}
+
+void Microparticles::append_beads(const Microparticle& particle) {
+  const std::size_t count = beads_.size() + particle.bead_count();
+  for (AlignedVector<Record>* array :
+       {&beads_.position, &beads_.moving, &beads_.liquid_force, &beads_.wall_force, &beads_.listed})
+    array->resize(count);
+  const std::vector<float> own = parameters_.microparticles.counts_own_beads
+                                     ? own_densities(particle, parameters_.liquid.repulsion_radius)
+                                     : std::vector<float>(particle.bead_count(), 0.f);
+  beads_.own_density.insert(beads_.own_density.end(), own.begin(), own.end());
+}
+
+void Microparticles::place_beads(const Microparticle& particle, const Vector3d& centre_velocity) {
+  const Eigen::Matrix3d turned = particle.body.orientation.toRotationMatrix();
+  const Vector3d rate = particle.body.angular_velocity();
+  const float attraction = static_cast<float>(particle.placement.attraction);
+  for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
+    const Vector3d arm = turned * particle.offsets[k];
+    Record& moving = beads_.moving[particle.first_bead + k];
+    beads_.position[particle.first_bead + k] = record_of(particle.body.position + arm, attraction);
+    moving = record_of(centre_velocity + rate.cross(arm), moving.w);
+  }
+}
+
+BodyDriftReport Microparticles::drift() {
+  BodyDriftReport report;
+  const double dt = parameters_.time_step;
+  for (Microparticle& particle : all_) {
+    RigidBody& body = particle.body;
+    body.velocity += 0.5 * dt / body.mass * particle.force;
+    body.angular_momentum += 0.5 * dt * particle.torque;
+    const FrictionReport friction =
+        apply_friction(parameters_.microparticles.contact, particle.friction, particle.contacts, dt, body);
+    particle.totals.friction_force += friction.force;
+    const Vector3d centre_velocity = body.velocity + friction.rolling;
+    const double way =
+        dt * (centre_velocity.norm() + particle.bounding_radius * body.angular_velocity().norm());
+    if (!(way < largest_step)) report.wild = particle.id;
+    body.position += dt * centre_velocity;
+    body.turn(dt);
+    place_beads(particle, centre_velocity);
+  }
+  for (std::size_t k = 0; k < beads_.size(); ++k)
+    report.largest_displacement_squared = std::max(
+        report.largest_displacement_squared,
+        static_cast<float>((vector_of(beads_.position[k]) - vector_of(beads_.listed[k])).squaredNorm()));
+  return report;
+}
+
+void Microparticles::finish(const BodyForces& far) {
+  const double dt = parameters_.time_step;
+  for (Microparticle& particle : all_) {
+    const Eigen::Matrix3d turned = particle.body.orientation.toRotationMatrix();
+    Vector3d drive = Vector3d::Zero();
+    particle.force = particle.torque = Vector3d::Zero();
+    for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
+      const Vector3d of_liquid = vector_of(beads_.liquid_force[particle.first_bead + k]);
+      const Vector3d force = of_liquid + vector_of(beads_.wall_force[particle.first_bead + k]);
+      drive += of_liquid;
+      particle.force += force;
+      particle.torque += (turned * particle.offsets[k]).cross(force);
+    }
+    particle.force += particle.body.mass * far.gravity;
+    if (particle.placement.magnetic) particle.force += far.magnetic;
+    touch_sides(particle);
+    particle.totals.drive_force += drive;
+  }
+  touch_each_other();
+  for (Microparticle& particle : all_) {
+    particle.body.velocity += 0.5 * dt / particle.body.mass * particle.force;
+    particle.body.angular_momentum += 0.5 * dt * particle.torque;
+    MicroparticleTotals& totals = particle.totals;
+    ++totals.steps;
+    totals.steps_in_contact += particle.contacts.empty() ? 0 : 1;
+    totals.height += particle.body.position.z() - wall_plane_;
+    for (const WallContact& contact : particle.contacts) totals.normal_force += contact.normal_force;
+  }
+}
+
+void Microparticles::touch_sides(Microparticle& particle) {
+  const Domain& domain = parameters_.domain;
+  particle.contacts.clear();
+  for (const ContactSphere& sphere : particle.contact_spheres) {
+    const Vector3d arm = particle.body.orientation * sphere.offset;
+    const Vector3d centre = particle.body.position + arm;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (domain.periodic(axis)) continue;
+      for (const int side : {1, -1}) {
+        const double distance =
+            side > 0 ? centre[axis] - domain.lower[axis] : domain.upper[axis] - centre[axis];
+        if (distance >= sphere.radius) continue;
+        const double normal =
+            hertz_force(parameters_.microparticles.elastic_modulus, sphere.radius, sphere.radius - distance);
+        const Vector3d force = side * normal * Vector3d::Unit(axis);
+        const Vector3d to_contact = arm - side * distance * Vector3d::Unit(axis);
+        particle.force += force;
+        particle.torque += to_contact.cross(force);
+        // The other sides of the box only keep things in: no friction.
+        if (has_wall_ && axis == 2 && side > 0)
+          particle.contacts.push_back({to_contact, sphere.radius, normal});
+      }
+    }
+  }
+}
+
+void Microparticles::touch_each_other() {
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    for (std::size_t j = i + 1; j < all_.size(); ++j) {
+      Microparticle &first = all_[i], &second = all_[j];
+      const Vector3d between = parameters_.domain.nearest_image(first.body.position - second.body.position);
+      if (between.norm() > first.bounding_radius + second.bounding_radius + adhesion_range) continue;
+      for (const ContactSphere& a : first.contact_spheres)
+        for (const ContactSphere& b : second.contact_spheres) {
+          const Vector3d arm_a = first.body.orientation * a.offset;
+          const Vector3d arm_b = second.body.orientation * b.offset;
+          const Vector3d d = between + arm_a - arm_b;
+          const double distance = d.norm();
+          if (distance == 0 || distance > a.radius + b.radius + adhesion_range) continue;
+          const Vector3d normal = d / distance;
+          const Vector3d force =
+              force_between(parameters_.microparticles, a.radius, b.radius, distance) * normal;
+          // One point of action for both, so that angular momentum is kept.
+          first.force += force;
+          first.torque += (arm_a - a.radius * normal).cross(force);
+          second.force -= force;
+          second.torque -= (arm_b + (distance - a.radius) * normal).cross(force);
+        }
+    }
+}
+
+void Microparticles::note_listed() {
+  const Domain& domain = parameters_.domain;
+  for (Microparticle& particle : all_) {
+    Vector3d shift = Vector3d::Zero();
+    for (int axis = 0; axis < 3; ++axis)
+      if (domain.periodic(axis))
+        shift[axis] = -domain.size()[axis] *
+                      std::floor((particle.body.position[axis] - domain.lower[axis]) / domain.size()[axis]);
+    if (shift.isZero()) continue;
+    particle.body.position += shift;
+    for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
+      Record& at = beads_.position[particle.first_bead + k];
+      at = record_of(vector_of(at) + shift, at.w);
+    }
+  }
+  beads_.listed = beads_.position;
+}
+
+void Microparticles::note_look() {
+  for (Microparticle& particle : all_) {
+    const MicroparticleTotals &now = particle.totals, &before = particle.last_look;
+    if (now.steps == before.steps) continue;
+    const double steps = static_cast<double>(now.steps - before.steps);
+    particle.means = {static_cast<double>(now.steps_in_contact - before.steps_in_contact) / steps,
+                      (now.normal_force - before.normal_force) / steps,
+                      (now.drive_force - before.drive_force) / steps,
+                      (now.friction_force - before.friction_force) / steps};
+    particle.last_look = now;
+  }
+}
+
+namespace {
+
+void archive_placement(Archive& archive, MicroparticlePlacement& placement) {
+  archive(placement.center.x());
+  archive(placement.center.y());
+  archive(placement.z);
+  archive(placement.radius);
+  archive(placement.beads);
+  archive(placement.smooth);
+  std::uint64_t points = placement.points.size();
+  archive(points);
+  if (archive.reading()) {
+    if (points > largest_bead_count) throw InvalidInput("saved state: a microparticle of too many points");
+    placement.points.resize(points);
+  }
+  for (Vector3d& point : placement.points) archive(point);
+  archive(placement.mass);
+  archive(placement.attraction);
+  archive(placement.static_friction);
+  archive(placement.kinetic_friction);
+  archive(placement.rolling_friction);
+  archive(placement.magnetic);
+}
+
+void archive_totals(Archive& archive, MicroparticleTotals& totals) {
+  archive(totals.steps);
+  archive(totals.steps_in_contact);
+  archive(totals.height);
+  archive(totals.normal_force);
+  archive(totals.drive_force);
+  archive(totals.friction_force);
+}
+
+void archive_motion(Archive& archive, Microparticle& particle) {
+  archive(particle.body.position);
+  for (int k = 0; k < 4; ++k) archive(particle.body.orientation.coeffs()[k]);
+  archive(particle.body.velocity);
+  archive(particle.body.angular_momentum);
+  archive(particle.force);
+  archive(particle.torque);
+  std::uint64_t contacts = particle.contacts.size();
+  archive(contacts);
+  if (archive.reading()) {
+    if (contacts > particle.contact_spheres.size())
+      throw InvalidInput("saved state: a microparticle touches the wall too often");
+    particle.contacts.resize(contacts);
+  }
+  for (WallContact& contact : particle.contacts) {
+    archive(contact.arm);
+    archive(contact.radius);
+    archive(contact.normal_force);
+  }
+  archive_totals(archive, particle.totals);
+  archive_totals(archive, particle.last_look);
+  archive(particle.means.contact_fraction);
+  archive(particle.means.normal_force);
+  archive(particle.means.drive_force);
+  archive(particle.means.friction_force);
+}
+
+}  // namespace
+
+void Microparticles::archive(Archive& archive) {
+  archive(next_id_);
+  std::uint64_t count = all_.size();
+  archive(count);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    if (archive.reading()) {
+      MicroparticlePlacement placement;
+      archive_placement(archive, placement);
+      require_sound(placement, parameters_);
+      Microparticle particle = shaped(placement, parameters_);
+      particle.first_bead = static_cast<std::uint32_t>(beads_.size());
+      append_beads(particle);
+      all_.push_back(std::move(particle));
+    } else {
+      archive_placement(archive, all_[k].placement);
+    }
+    archive(all_[k].id);
+    archive_motion(archive, all_[k]);
+  }
+  for (AlignedVector<Record>* array : {&beads_.position, &beads_.moving, &beads_.listed}) {
+    archive(*array);
+    if (array->size() != beads_.own_density.size())
+      throw InvalidInput("saved state: beads of microparticles are missing");
+  }
+}
+
+}  // namespace dmf::engine

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "engine/bodies/microparticles.h"
+
+namespace dmf::engine {
+
+/// Most beads of one microparticle.
+constexpr std::uint32_t largest_bead_count = 20000;
+
+/// What Lan's microparticle has: 612 beads on a sphere of radius 1, per r_c^2.
+constexpr double usual_beads_per_area = 612 / (4 * 3.14159265358979323846);
+/// The fewest that keep the liquid out: 312 on a sphere of radius 1 (Lan 3.1.2), per r_c^2.
+constexpr double fewest_beads_per_area = 312 / (4 * 3.14159265358979323846);
+
+/// The rigid body that a sound placement describes, at its place, at rest; without id and beads' indices.
+/// @throws InvalidInput when it has no z and there is no wall to rest on.
+Microparticle shaped(const MicroparticlePlacement& placement, const Parameters& parameters);
+
+/// Density that the beads of a body count of each other (Lan 2.37).
+std::vector<float> own_densities(const Microparticle& particle, double repulsion_radius);
+
+}  // namespace dmf::engine
