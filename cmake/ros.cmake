@@ -27,15 +27,19 @@ add_message_files(FILES
   ElectrodeOutline.msg
   ElectrodeState.msg
   Event.msg
-  Layout.msg)
+  Layout.msg
+  Microparticle.msg
+  MicroparticleArray.msg)
 
 add_service_files(FILES
+  AddMicroparticle.srv
   Checkpoint.srv
   DispenseDroplet.srv
   GetLayout.srv
   GetState.srv
   LoadPattern.srv
   Remove.srv
+  SetBodyForces.srv
   SetElectrodeVoltages.srv
   SetElectrodes.srv
   SetHv.srv

@@ -39,8 +39,9 @@ void Board::apply(const Command& command) {
   const auto pass_on = [this](const auto& given) {
     using Given = std::decay_t<decltype(given)>;
     constexpr bool kElsewhere = std::is_same_v<Given, LoadPattern> ||
-                                std::is_same_v<Given, DispenseDroplet> || std::is_same_v<Given, Remove> ||
-                                std::is_same_v<Given, Reset>;
+                                std::is_same_v<Given, DispenseDroplet> ||
+                                std::is_same_v<Given, AddMicroparticle> || std::is_same_v<Given, Remove> ||
+                                std::is_same_v<Given, SetBodyForces> || std::is_same_v<Given, Reset>;
     if constexpr (kElsewhere) {
       throw engine::InvalidInput(name_of(given) + " is no command of a board");
     } else {

@@ -15,7 +15,9 @@ struct NameOf {
   const char* operator()(const SetWettability&) const { return "set_wettability"; }
   const char* operator()(const LoadPattern&) const { return "load_pattern"; }
   const char* operator()(const DispenseDroplet&) const { return "dispense_droplet"; }
+  const char* operator()(const AddMicroparticle&) const { return "add_microparticle"; }
   const char* operator()(const Remove&) const { return "remove"; }
+  const char* operator()(const SetBodyForces&) const { return "set_body_forces"; }
   const char* operator()(const Reset&) const { return "reset"; }
 };
 
@@ -43,7 +45,37 @@ struct Write {
     json["y"] = command.y;
     json["volume"] = command.volume;
   }
-  void operator()(const Remove& command) const { json["droplet"] = command.droplet; }
+  void operator()(const AddMicroparticle& command) const {
+    json["x"] = command.x;
+    json["y"] = command.y;
+    json["height"] = command.height;
+    json["radius"] = command.radius;
+    if (command.beads > 0) json["beads"] = command.beads;
+    if (command.smooth) json["smooth"] = true;
+    for (const Eigen::Vector3d& point : command.points)
+      json["points"].push_back({point.x(), point.y(), point.z()});
+    if (command.mass) json["mass"] = *command.mass;
+    if (command.contact_angle_deg) {
+      json["contact_angle"] = *command.contact_angle_deg;
+    } else {
+      json["attraction"] = command.attraction;
+    }
+    json["static_friction"] = command.static_friction;
+    if (command.kinetic_friction) json["kinetic_friction"] = *command.kinetic_friction;
+    json["rolling_friction"] = command.rolling_friction;
+    json["magnetic"] = command.magnetic;
+  }
+  void operator()(const Remove& command) const {
+    if (command.microparticle > 0) {
+      json["microparticle"] = command.microparticle;
+    } else {
+      json["droplet"] = command.droplet;
+    }
+  }
+  void operator()(const SetBodyForces& command) const {
+    json["gravity"] = command.gravity;
+    json["magnetic"] = command.magnetic;
+  }
   void operator()(const Reset&) const {}
 };
 

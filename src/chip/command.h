@@ -1,8 +1,13 @@
 #pragma once
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "engine/microparticle.h"
 
 namespace dmf::chip {
 
@@ -37,13 +42,34 @@ struct DispenseDroplet {  ///< a droplet on the plate above (x, y)
   double x = 0, y = 0;    ///< m
   double volume = 0;      ///< m^3, of the sphere that is placed just touching the plate
 };
-struct Remove {  ///< takes a droplet off the chip
+struct AddMicroparticle {   ///< a rigid body of beads at rest
+  double x = 0, y = 0;      ///< m, of a sphere's centre; for `points` the place of their origin
+  double height = 0;        ///< of its lowest point over the plate, m; 0: it rests on the plate
+  double radius = 0;        ///< of the sphere, or of the contact sphere around each of `points`, m
+  std::uint32_t beads = 0;  ///< of the sphere's shell, see engine::MicroparticlePlacement
+  bool smooth = false;      ///< one bead of a smooth surface in place of the shell
+  std::vector<Eigen::Vector3d> points;  ///< beads from the origin, m, in place of a sphere
+  std::optional<double> mass;           ///< of the whole body, kg; by default that of a bead, for each bead
+  /// A_ls, reduced.
+  double attraction = engine::MicroparticlePlacement{}.attraction;
+  std::optional<double> contact_angle_deg;  ///< in place of the attraction, within the scene's calibration
+  double static_friction = engine::MicroparticlePlacement{}.static_friction;
+  std::optional<double> kinetic_friction;  ///< by default the static one
+  double rolling_friction = engine::MicroparticlePlacement{}.rolling_friction;
+  bool magnetic = false;  ///< feels SetBodyForces::magnetic
+};
+struct Remove {  ///< takes a droplet or a microparticle off the chip; exactly one of both ids is not 0
   std::uint32_t droplet = 0;
+  std::uint32_t microparticle = 0;
+};
+struct SetBodyForces {               ///< forces that act from afar, in place of those before
+  std::array<double, 3> gravity{};   ///< of all liquid and microparticles, m/s^2
+  std::array<double, 3> magnetic{};  ///< on each magnetic microparticle, N
 };
 struct Reset {};  ///< the scene from its start
 
 using Command = std::variant<SetElectrodes, SetHv, SetElectrodeVoltages, SetWettability, LoadPattern,
-                             DispenseDroplet, Remove, Reset>;
+                             DispenseDroplet, AddMicroparticle, Remove, SetBodyForces, Reset>;
 
 /// "set_electrodes", "set_hv", ...: the name of the service that gives this command.
 std::string name_of(const Command& command);
@@ -59,6 +85,7 @@ struct Reply {
   std::string message;                          ///< what was done, or what was wrong and what is allowed
   std::uint64_t step = 0;                       ///< at which it took effect
   std::vector<std::uint32_t> applied_channels;  ///< channels that are on now (set_electrodes)
+  std::uint32_t microparticle = 0;              ///< id of the new one (add_microparticle), else 0
 };
 
 /// An accepted command with the step before which it took effect.

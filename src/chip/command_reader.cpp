@@ -64,9 +64,44 @@ Command read_dispense_droplet(const YamlReader& reader, const Units& units) {
   return command;
 }
 
+Command read_add_microparticle(const YamlReader& reader, const Units& units) {
+  AddMicroparticle command;
+  command.x = reader.quantity("x", Dimension::length, {}) * units.length_m;
+  command.y = reader.quantity("y", Dimension::length, {}) * units.length_m;
+  command.height = reader.quantity("height", Dimension::length, {}, 0.0) * units.length_m;
+  const auto [body, contact_angle] = read_microparticle(reader);
+  command.radius = body.radius * units.length_m;
+  command.beads = body.beads;
+  command.smooth = body.smooth;
+  for (const Eigen::Vector3d& point : body.points) command.points.push_back(point * units.length_m);
+  if (body.mass) command.mass = *body.mass * units.mass_kg;
+  command.attraction = body.attraction;
+  command.contact_angle_deg = contact_angle;
+  command.static_friction = body.static_friction;
+  command.kinetic_friction = body.kinetic_friction;
+  command.rolling_friction = body.rolling_friction;
+  command.magnetic = body.magnetic;
+  return command;
+}
+
 Command read_remove(const YamlReader& reader, const Units&) {
   const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  return Remove{static_cast<std::uint32_t>(reader.integer("droplet", 1, most))};
+  Remove command;
+  if (reader.has("microparticle")) {
+    if (reader.has("droplet"))
+      reader.report("microparticle", "given together with droplet, allowed: one of both");
+    command.microparticle = static_cast<std::uint32_t>(reader.integer("microparticle", 1, most));
+  } else {
+    command.droplet = static_cast<std::uint32_t>(reader.integer("droplet", 1, most));
+  }
+  return command;
+}
+
+Command read_set_body_forces(const YamlReader& reader, const Units& units) {
+  const Eigen::Vector3d gravity =
+      read_vector(reader, "gravity", Dimension::acceleration) * units.acceleration_m_per_s2();
+  const Eigen::Vector3d magnetic = read_vector(reader, "magnetic", Dimension::force) * units.force_N();
+  return SetBodyForces{{gravity.x(), gravity.y(), gravity.z()}, {magnetic.x(), magnetic.y(), magnetic.z()}};
 }
 
 Command read_reset(const YamlReader&, const Units&) { return Reset{}; }
@@ -81,7 +116,9 @@ const std::vector<std::pair<std::string, Read>>& readers() {
       {name_of(SetWettability{}), read_set_wettability},
       {name_of(LoadPattern{}), read_load_pattern},
       {name_of(DispenseDroplet{}), read_dispense_droplet},
+      {name_of(AddMicroparticle{}), read_add_microparticle},
       {name_of(Remove{}), read_remove},
+      {name_of(SetBodyForces{}), read_set_body_forces},
       {name_of(Reset{}), read_reset}};
   return table;
 }
@@ -112,6 +149,40 @@ double read_radius(const YamlReader& reader) {
     return reader.quantity("radius", Dimension::length, Range::above(0));
   }
   return sphere_radius(reader.quantity("volume", Dimension::volume, Range::above(0)));
+}
+
+WrittenMicroparticle read_microparticle(const YamlReader& reader) {
+  WrittenMicroparticle written;
+  engine::MicroparticlePlacement& body = written.body;
+  // The engine has the ranges, so that each stands once; here any number goes.
+  body.radius = reader.quantity("radius", Dimension::length, Range::above(0));
+  const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  body.beads = static_cast<std::uint32_t>(reader.integer("beads", 0, most, body.beads));
+  body.smooth = reader.boolean("smooth", body.smooth);
+  for (const auto& point : reader.rows("points", Dimension::length, {}, {}, {3, 3})) {
+    body.points.emplace_back(point[0], point[1], point[2]);
+  }
+  if (reader.has("points") && reader.has("beads"))
+    reader.report("beads", "given together with points, allowed: one of both");
+  if (reader.has("mass")) body.mass = reader.quantity("mass", Dimension::mass, {});
+  body.attraction = reader.number("attraction", {}, body.attraction);
+  if (reader.has("contact_angle")) {
+    if (reader.has("attraction"))
+      reader.report("contact_angle", "given together with attraction, allowed: one of both");
+    written.contact_angle = reader.quantity("contact_angle", Dimension::angle, {});
+  }
+  body.static_friction = reader.number("static_friction", {}, body.static_friction);
+  if (reader.has("kinetic_friction")) body.kinetic_friction = reader.number("kinetic_friction", {});
+  body.rolling_friction = reader.number("rolling_friction", {}, body.rolling_friction);
+  body.magnetic = reader.boolean("magnetic", body.magnetic);
+  return written;
+}
+
+Eigen::Vector3d read_vector(const YamlReader& reader, const std::string& key, Dimension dimension) {
+  if (!reader.has(key)) return Eigen::Vector3d::Zero();
+  const auto components = reader.quantities(key, dimension, {}, {3, 3});
+  if (components.size() != 3) return Eigen::Vector3d::Zero();
+  return {components[0], components[1], components[2]};
 }
 
 double sphere_volume(double radius) { return 4 * kPi / 3 * radius * radius * radius; }

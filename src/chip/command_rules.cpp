@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -63,8 +64,8 @@ class Rules {
   }
 
   void operator()(const DispenseDroplet& command) {
-    if (!std::isfinite(command.x)) note("x {} m: allowed: a finite number", command.x);
-    if (!std::isfinite(command.y)) note("y {} m: allowed: a finite number", command.y);
+    check_finite("x", command.x, "m");
+    check_finite("y", command.y, "m");
     if (!(command.volume > 0 && std::isfinite(command.volume))) {
       note("volume {} m^3: allowed more than 0 m^3", command.volume);
     }
@@ -72,7 +73,50 @@ class Rules {
     for (auto& violation : violations(placement_of(command, scene_), scene_)) found_.push_back(violation);
   }
 
-  void operator()(const Remove&) {}
+  void operator()(const AddMicroparticle& command) {
+    check_finite("x", command.x, "m");
+    check_finite("y", command.y, "m");
+    if (!(command.height >= 0 && std::isfinite(command.height))) {
+      note("height {} m: allowed 0 m or more over the plate", command.height);
+    }
+    if (!(command.radius > 0 && std::isfinite(command.radius))) {
+      note("radius {} m: allowed more than 0 m", command.radius);
+    }
+    if (command.beads > 0 && !command.points.empty()) {
+      note("beads {} given together with points: allowed one of both", command.beads);
+    }
+    for (const Eigen::Vector3d& point : command.points) {
+      if (!point.allFinite())
+        note("points: ({}, {}, {}) m, allowed: finite", point.x(), point.y(), point.z());
+    }
+    if (command.mass && !(*command.mass > 0 && std::isfinite(*command.mass))) {
+      note("mass {} kg: allowed more than 0 kg", *command.mass);
+    }
+    if (!found_.empty()) return;
+    try {
+      for (auto& violation : engine::violations(placement_of(command, scene_), scene_.parameters))
+        found_.push_back(std::move(violation));
+    } catch (const engine::InvalidInput& refusal) {
+      note("{}", refusal.what());
+    }
+  }
+
+  void operator()(const Remove& command) {
+    if ((command.droplet > 0) == (command.microparticle > 0)) {
+      note("droplet {} and microparticle {}: allowed the id of one, from 1, and 0 for the other",
+           command.droplet, command.microparticle);
+    }
+  }
+
+  void operator()(const SetBodyForces& command) {
+    check_finite("gravity's x", command.gravity[0], "m/s^2");
+    check_finite("gravity's y", command.gravity[1], "m/s^2");
+    check_finite("gravity's z", command.gravity[2], "m/s^2");
+    check_finite("magnetic force's x", command.magnetic[0], "N");
+    check_finite("magnetic force's y", command.magnetic[1], "N");
+    check_finite("magnetic force's z", command.magnetic[2], "N");
+  }
+
   void operator()(const Reset&) {}
 
   std::vector<std::string> found() && { return std::move(found_); }
@@ -81,6 +125,10 @@ class Rules {
   template <typename... Arguments>
   void note(const char* text, const Arguments&... arguments) {
     found_.push_back(fmt::format(fmt::runtime(text), arguments...));
+  }
+
+  void check_finite(const std::string& name, double value, const char* unit) {
+    if (!std::isfinite(value)) note("{} {} {}: allowed: a finite number", name, value, unit);
   }
 
   void check_channels(const std::vector<std::uint32_t>& channels) {
@@ -140,6 +188,37 @@ engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scen
   const double radius = sphere_radius(command.volume / units.volume_m3());
   const double z = scene.parameters.domain.lower.z() + radius;
   return {{command.x / units.length_m, command.y / units.length_m, z}, radius};
+}
+
+engine::MicroparticlePlacement placement_of(const AddMicroparticle& command, const Scene& scene) {
+  const engine::Units& units = scene.units;
+  engine::MicroparticlePlacement body;
+  body.center = {command.x / units.length_m, command.y / units.length_m};
+  body.radius = command.radius / units.length_m;
+  body.beads = command.beads;
+  body.smooth = command.smooth;
+  double lowest = 0;  // of the contact spheres' centres
+  for (const Eigen::Vector3d& point : command.points) {
+    body.points.push_back(point / units.length_m);
+    lowest = body.points.size() == 1 ? body.points[0].z() : std::min(lowest, body.points.back().z());
+  }
+  if (command.height > 0) {
+    body.z = scene.parameters.domain.lower.z() + body.radius - lowest + command.height / units.length_m;
+  }
+  if (command.mass) body.mass = *command.mass / units.mass_kg;
+  body.attraction = command.contact_angle_deg
+                        ? load_microparticle_curve(scene).attraction(*command.contact_angle_deg)
+                        : command.attraction;
+  body.static_friction = command.static_friction;
+  body.kinetic_friction = command.kinetic_friction;
+  body.rolling_friction = command.rolling_friction;
+  body.magnetic = command.magnetic;
+  return body;
+}
+
+engine::BodyForces body_forces_of(const SetBodyForces& command, const Scene& scene) {
+  return {Eigen::Vector3d(command.gravity.data()) / scene.units.acceleration_m_per_s2(),
+          Eigen::Vector3d(command.magnetic.data()) / scene.units.force_N()};
 }
 
 std::vector<std::string> violations(const engine::DropletPlacement& placement, const Scene& scene) {

@@ -12,12 +12,19 @@ namespace dmf::chip {
 
 /// What is wrong with a command for this scene, whoever gives it: a service, the schedule or a pattern. Each
 /// names the thing, its value and what is allowed. Empty when the command is sound; what depends on where the
-/// liquid is by then (an occupied place, a droplet that is gone) only the engine can tell.
+/// liquid is by then (an occupied place, a droplet that is gone), and a microparticle's own ranges, only the
+/// engine can tell.
 std::vector<std::string> violations(const Command& command, const Scene& scene,
                                     const engine::ContactAngleCurve& curve);
 
 /// The sphere that a DispenseDroplet asks for, just touching the plate, r_c.
 engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scene& scene);
+
+/// The body that an AddMicroparticle asks for, reduced units.
+/// @throws engine::InvalidInput when its contact angle is outside the scene's calibration.
+engine::MicroparticlePlacement placement_of(const AddMicroparticle& command, const Scene& scene);
+
+engine::BodyForces body_forces_of(const SetBodyForces& command, const Scene& scene);
 
 /// What is wrong with where a droplet is to be placed; a side on which the domain is periodic bounds only its
 /// centre.

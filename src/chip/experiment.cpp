@@ -42,14 +42,25 @@ struct Run {
     schedule = {&scene->schedule, static_cast<std::uint64_t>(std::llround(settle_steps)), 0};
   }
 
-  void place_droplets(const Scene& scene) {
-    for (std::size_t i = 0; i < scene.droplets.size(); ++i) {
+  /// What the scene has on the plate from the start. @throws engine::InvalidInput naming its key.
+  void place(const Scene& scene) {
+    const auto attempt = [&scene](const std::string& key, const auto& action) {
       try {
-        simulation->add_droplet(scene.droplets[i]);
+        action();
       } catch (const engine::InvalidInput& error) {
-        throw engine::InvalidInput(fmt::format("{}: droplets[{}]: {}", scene.source, i, error.what()));
+        throw engine::InvalidInput(fmt::format("{}: {}: {}", scene.source, key, error.what()));
       }
+    };
+    for (std::size_t i = 0; i < scene.droplets.size(); ++i) {
+      attempt(fmt::format("droplets[{}]", i), [&] { simulation->add_droplet(scene.droplets[i]); });
     }
+    for (std::size_t i = 0; i < scene.microparticles.size(); ++i) {
+      attempt(fmt::format("microparticles[{}]", i),
+              [&] { simulation->add_microparticle(scene.microparticles[i]); });
+    }
+    const engine::BodyForces& forces = scene.body_forces;
+    if (!forces.gravity.isZero(0) || !forces.magnetic.isZero(0))
+      attempt("body_forces", [&] { simulation->set_body_forces(forces); });
   }
 
   /// Makes a board the one that the wall shows, or changes nothing and throws.
@@ -62,7 +73,8 @@ struct Run {
   Board board;
   Sequence schedule;
   Sequence pattern;
-  std::string pattern_name;  ///< of the pattern that was loaded last; empty before the first
+  std::string pattern_name;                ///< of the pattern that was loaded last; empty before the first
+  std::uint32_t newest_microparticle = 0;  ///< id of the one that a command added last
   std::vector<CommandRecord> history;
   std::vector<ScheduledReply> scheduled_replies;
   std::string fault;
@@ -82,7 +94,7 @@ struct Experiment::State {
 
   void start() {
     auto fresh = std::make_unique<Run>(scene, parameters, curve, execution);
-    fresh->place_droplets(*scene);
+    fresh->place(*scene);
     run = std::move(fresh);
   }
 
@@ -104,7 +116,9 @@ struct Experiment::State {
   std::string carry_out(const SetWettability& command);
   std::string carry_out(const LoadPattern& command);
   std::string carry_out(const DispenseDroplet& command);
+  std::string carry_out(const AddMicroparticle& command);
   std::string carry_out(const Remove& command);
+  std::string carry_out(const SetBodyForces& command);
   std::string carry_out(const Reset& command);
 
   template <typename BoardCommand>
@@ -140,6 +154,7 @@ Reply Experiment::State::apply(const Command& command) {
       reply.success = true;
       reply.step = run->simulation->steps();
       reply.applied_channels = channels_on();
+      if (std::holds_alternative<AddMicroparticle>(command)) reply.microparticle = run->newest_microparticle;
     } catch (const engine::InvalidInput& refusal) {
       reply.message = refusal.what();
     }
@@ -196,9 +211,24 @@ std::string Experiment::State::carry_out(const DispenseDroplet& command) {
   return fmt::format("droplet of {} beads dispensed", beads);
 }
 
+std::string Experiment::State::carry_out(const AddMicroparticle& command) {
+  run->newest_microparticle = run->simulation->add_microparticle(placement_of(command, *scene));
+  return fmt::format("microparticle {} added", run->newest_microparticle);
+}
+
 std::string Experiment::State::carry_out(const Remove& command) {
+  if (command.microparticle > 0) {
+    run->simulation->remove_microparticle(command.microparticle);
+    return fmt::format("microparticle {} removed", command.microparticle);
+  }
   run->simulation->remove_droplet(command.droplet);
   return fmt::format("droplet {} removed", command.droplet);
+}
+
+std::string Experiment::State::carry_out(const SetBodyForces& command) {
+  run->simulation->set_body_forces(body_forces_of(command, *scene));
+  return fmt::format("gravity ({:g}) m/s^2, magnetic force ({:g}) N", fmt::join(command.gravity, ", "),
+                     fmt::join(command.magnetic, ", "));
 }
 
 std::string Experiment::State::carry_out(const Reset&) {
@@ -309,6 +339,10 @@ std::shared_ptr<const engine::Snapshot> Experiment::observe(const engine::Observ
 }
 
 std::vector<engine::DropletEvent> Experiment::take_events() { return state_->run->simulation->take_events(); }
+
+std::vector<engine::MicroparticleEvent> Experiment::take_microparticle_events() {
+  return state_->run->simulation->take_microparticle_events();
+}
 
 std::vector<ScheduledReply> Experiment::take_scheduled_replies() {
   return std::exchange(state_->run->scheduled_replies, {});

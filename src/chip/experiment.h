@@ -24,14 +24,14 @@ struct ScheduledReply {
   Reply reply;
 };
 
-/// A chip with its droplets: turns commands into wettability and steps the engine. Everything that the node,
-/// the headless tool and the tests run is one of these. Not thread-safe.
+/// A chip with its droplets and microparticles: turns commands into wettability and steps the engine.
+/// Everything that the node, the headless tool and the tests run is one of these. Not thread-safe.
 ///
 /// Data flows one way: command -> rail and channels -> voltage of each pad -> contact angle over the plate ->
 /// engine. A command is refused whole or takes effect before the next step, and is then in history().
 class Experiment {
  public:
-  /// Builds the engine and places the scene's droplets. `seed` replaces the scene's.
+  /// Builds the engine and places the scene's droplets and microparticles. `seed` replaces the scene's.
   /// @throws engine::InvalidInput.
   Experiment(const Scene& scene, const engine::Execution& execution, std::optional<std::uint64_t> seed = {});
   ~Experiment();
@@ -48,6 +48,7 @@ class Experiment {
 
   std::shared_ptr<const engine::Snapshot> observe(const engine::ObserveRequest& request = {}) const;
   std::vector<engine::DropletEvent> take_events();
+  std::vector<engine::MicroparticleEvent> take_microparticle_events();
   /// What the schedule and patterns did since the last call, in order.
   std::vector<ScheduledReply> take_scheduled_replies();
 

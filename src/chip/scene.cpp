@@ -98,6 +98,8 @@ Scene read_scene(YamlReader root, const std::string& source) {
   const auto curve = read_wettability(root, scene);
   const bool has_layout = read_chip(root, scene);
   read_droplets(root, scene);
+  read_microparticles(root, scene);
+  read_body_forces(root, scene);
 
   // Commands may name channels, angles, patterns and places: read them all, then look at each.
   const WrittenSequence schedule = read_sequence(root, "schedule", scene.units, schedule_commands());
@@ -125,6 +127,11 @@ Scene read_scene(YamlReader root, const std::string& source) {
 engine::ContactAngleCurve load_curve(const Scene& scene) {
   if (scene.calibration_file.empty()) return engine::ContactAngleCurve::lan2016();
   return engine::ContactAngleCurve::load(scene.calibration_file);
+}
+
+engine::ContactAngleCurve load_microparticle_curve(const Scene& scene) {
+  if (scene.microparticle_calibration == kLanFormula) return engine::ContactAngleCurve::lan2016();
+  return engine::ContactAngleCurve::load(find_config("calibration", scene.microparticle_calibration));
 }
 
 Scene load_scene(const std::string& file) {

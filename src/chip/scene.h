@@ -7,6 +7,7 @@
 #include "chip/command.h"
 #include "chip/electrowetting.h"
 #include "chip/layout.h"
+#include "engine/microparticle.h"
 #include "engine/parameters.h"
 #include "engine/simulation.h"
 #include "engine/units.h"
@@ -34,13 +35,20 @@ struct Scene {
   double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
   double settle_time = 0;       ///< tau at rest before the scene's clock of commands starts
   std::vector<engine::DropletPlacement> droplets;
-  std::vector<ScheduledCommand> schedule;                         ///< by rising time
+  std::string microparticle_calibration;                       ///< of their contact angles: a name or a path
+  std::vector<engine::MicroparticlePlacement> microparticles;  ///< placed after the droplets
+  engine::BodyForces body_forces;                              ///< that act from the start
+  std::vector<ScheduledCommand> schedule;                      ///< by rising time
   std::map<std::string, std::vector<ScheduledCommand>> patterns;  ///< for ~load_pattern, by rising time
 };
 
 /// The relation of wall attraction and contact angle that the scene names.
 /// @throws engine::InvalidInput when its file can't be read.
 engine::ContactAngleCurve load_curve(const Scene& scene);
+
+/// The relation of a microparticle's attraction A_ls and its contact angle that the scene names. Read only
+/// when a contact angle is asked for. @throws engine::InvalidInput when its file can't be read.
+engine::ContactAngleCurve load_microparticle_curve(const Scene& scene);
 
 /// Reads a scene; docs/scene_format.md lists the keys. Lengths, times, angles, voltages are numbers in
 /// reduced units (r_c, tau), degrees and volts, or text with a unit ("1.5 mm", "20 um", "5 ms", "63 V", "150

@@ -22,9 +22,8 @@ using engine::YamlReader;
 
 namespace {
 
-/// Name of Lan's own formula among the calibrations.
-constexpr const char* kLanFormula = "lan2016";
 constexpr const char* kDefaultCalibration = "water_like";
+constexpr const char* kDefaultMicroparticleCalibration = "microparticle";
 
 constexpr std::uint64_t kMaxPerSide = 1000;       // columns, rows
 constexpr std::uint64_t kMaxChannel = 1'000'000;  // of a grid's first electrode and of a polygon
@@ -67,6 +66,23 @@ bool attempt(const YamlReader& reader, const std::string& key, const Action& act
     for (std::string line; std::getline(lines, line);) reader.report(key, line);
     return false;
   }
+}
+
+engine::MicroparticleParameters read_microparticle_model(const YamlReader& root) {
+  engine::MicroparticleParameters model;
+  const auto section = root.optional_mapping("microparticle_model");
+  if (!section) return model;
+  model.contact = section->choice("contact", {"lan2016", "coulomb"}, "lan2016") == "coulomb"
+                      ? engine::ContactModel::coulomb
+                      : engine::ContactModel::lan2016;
+  model.elastic_modulus = section->number("elastic_modulus", {}, model.elastic_modulus);
+  model.wall_attraction = section->number("wall_attraction", {}, model.wall_attraction);
+  model.liquid_repulsion = section->number("liquid_repulsion", {}, model.liquid_repulsion);
+  model.particle_adhesion = section->number("particle_adhesion", {}, model.particle_adhesion);
+  model.counts_own_beads = section->boolean("counts_own_beads", model.counts_own_beads);
+  model.counts_liquid = section->boolean("counts_liquid", model.counts_liquid);
+  model.counted_by_liquid = section->boolean("counted_by_liquid", model.counted_by_liquid);
+  return model;
 }
 
 bool read_grid(const YamlReader& section, double gap, std::vector<Electrode>& electrodes) {
@@ -165,6 +181,7 @@ void read_engine(const YamlReader& root, engine::Parameters& parameters) {
         static_cast<int>(wall->integer("layers", 0, kMaxPerSide, parameters.wall.layers));
   }
   parameters.domain = read_domain(root);
+  parameters.microparticles = read_microparticle_model(root);
   parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
   parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
   parameters.integrator = root.choice("integrator", {"groot_warren", "baoab"}, "groot_warren") == "baoab"
@@ -242,6 +259,40 @@ void read_droplets(const YamlReader& root, Scene& scene) {
     }
     scene.droplets.push_back(placement);
   }
+}
+
+void read_microparticles(const YamlReader& root, Scene& scene) {
+  scene.microparticle_calibration = kDefaultMicroparticleCalibration;
+  std::optional<engine::ContactAngleCurve> curve;
+  bool sound = true;
+  if (const auto model = root.optional_mapping("microparticle_model"); model && model->has("calibration")) {
+    scene.microparticle_calibration = model->text("calibration");
+    sound = attempt(*model, "calibration", [&] { curve = load_microparticle_curve(scene); });
+  }
+  for (const YamlReader& section : root.mappings("microparticles")) {
+    const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
+    WrittenMicroparticle written = read_microparticle(section);
+    if (written.contact_angle && sound) {
+      attempt(section, "contact_angle", [&] {
+        if (!curve) curve = load_microparticle_curve(scene);
+        written.body.attraction = curve->attraction(*written.contact_angle);
+      });
+    }
+    if (centre.size() < 2) continue;
+    written.body.center = {centre[0], centre[1]};
+    if (centre.size() == 3) written.body.z = centre[2];
+    if (!root.failed())
+      for (const std::string& violation : engine::violations(written.body, scene.parameters))
+        section.report("", violation);
+    scene.microparticles.push_back(std::move(written.body));
+  }
+}
+
+void read_body_forces(const YamlReader& root, Scene& scene) {
+  const auto section = root.optional_mapping("body_forces");
+  if (!section) return;
+  scene.body_forces.gravity = read_vector(*section, "gravity", Dimension::acceleration);
+  scene.body_forces.magnetic = read_vector(*section, "magnetic", Dimension::force);
 }
 
 void check_angles(const YamlReader& root, const Scene& scene, const engine::ContactAngleCurve& curve) {

@@ -22,6 +22,15 @@ geometry_msgs::Point to_point(const Vector3d& v) {
   return point;
 }
 
+geometry_msgs::Quaternion to_quaternion(const Eigen::Quaterniond& q) {
+  geometry_msgs::Quaternion quaternion;
+  quaternion.x = q.x();
+  quaternion.y = q.y();
+  quaternion.z = q.z();
+  quaternion.w = q.w();
+  return quaternion;
+}
+
 geometry_msgs::Vector3 to_vector(const Vector3d& v) {
   geometry_msgs::Vector3 vector;
   vector.x = v.x();
@@ -44,6 +53,21 @@ const char* limit_name(Limit limit) {
       return "paused";
     case Limit::fault:
       return "fault";
+  }
+  return "";
+}
+
+const char* place_name(engine::MicroparticlePlace place) {
+  using dmf_sim::Microparticle;
+  switch (place) {
+    case engine::MicroparticlePlace::dry:
+      return Microparticle::DRY.c_str();
+    case engine::MicroparticlePlace::front:
+      return Microparticle::FRONT.c_str();
+    case engine::MicroparticlePlace::rear:
+      return Microparticle::REAR.c_str();
+    case engine::MicroparticlePlace::inside:
+      return Microparticle::INSIDE.c_str();
   }
   return "";
 }
@@ -86,6 +110,35 @@ dmf_sim::Droplet to_droplet(const engine::DropletObservation& droplet,
   return message;
 }
 
+dmf_sim::Microparticle to_microparticle(const engine::MicroparticleObservation& body,
+                                        const engine::Units& units) {
+  constexpr double kTouching = 0.5;  // of the steps: more than that is contact
+  dmf_sim::Microparticle message;
+  message.id = body.id;
+  message.radius = body.radius * units.length_m;
+  message.mass = body.mass * units.mass_kg;
+  message.beads = body.beads;
+  message.magnetic = body.magnetic;
+  message.attraction_mdpd = body.attraction;
+  message.pose.position = to_point(body.position * units.length_m);
+  message.pose.orientation = to_quaternion(body.orientation);
+  message.twist.linear = to_vector(body.velocity * units.velocity_m_per_s());
+  message.twist.angular = to_vector(body.angular_velocity / units.time_s);
+  message.position_mdpd = to_point(body.position);
+  message.velocity_mdpd = to_vector(body.velocity);
+  message.angular_velocity_mdpd = to_vector(body.angular_velocity);
+  message.contact = body.contact_fraction > kTouching;
+  message.contact_fraction = body.contact_fraction;
+  message.contact_normal.z = message.contact ? 1 : 0;  // the plate is flat
+  message.normal_force = body.normal_force * units.force_N();
+  message.friction_force = to_vector(body.friction_force * units.force_N());
+  message.drive_force = to_vector(body.drive_force * units.force_N());
+  message.immersion = body.immersion;
+  message.droplet = body.droplet;
+  message.place = place_name(body.place);
+  return message;
+}
+
 diagnostic_msgs::KeyValue value(const std::string& key, const std::string& text) {
   diagnostic_msgs::KeyValue pair;
   pair.key = key;
@@ -97,6 +150,7 @@ diagnostic_msgs::KeyValue value(const std::string& key, const std::string& text)
 
 std::string electrode_frame(std::uint32_t channel) { return fmt::format("chip/electrode_{}", channel); }
 std::string droplet_frame(std::uint32_t id) { return fmt::format("chip/droplet_{}", id); }
+std::string microparticle_frame(std::uint32_t id) { return fmt::format("chip/microparticle_{}", id); }
 
 ros::Time to_ros_time(std::uint64_t nanoseconds) { return ros::Time().fromNSec(nanoseconds); }
 
@@ -129,6 +183,10 @@ dmf_sim::ChipState to_state(const Frame& frame, const ConversionContext& context
   state.wall_beads = snapshot.wall_beads;
   state.vapour_beads = snapshot.vapour_beads;
   state.droplets = static_cast<std::uint32_t>(snapshot.droplets.size());
+  state.microparticles = static_cast<std::uint32_t>(snapshot.microparticles.size());
+  const engine::Units& units = context.scene.units;
+  state.gravity = to_vector(frame.body_forces.gravity * units.acceleration_m_per_s2());
+  state.magnetic = to_vector(frame.body_forces.magnetic * units.force_N());
   if (snapshot.state_hash) state.state_hash = hash_text(*snapshot.state_hash);
   return state;
 }
@@ -163,6 +221,19 @@ dmf_sim::DropletArray to_droplets(const Frame& frame, const ConversionContext& c
   message.droplets.reserve(snapshot.droplets.size());
   for (std::size_t i = 0; i < snapshot.droplets.size(); ++i) {
     message.droplets.push_back(to_droplet(snapshot.droplets[i], frame.channels.at(i), context));
+  }
+  return message;
+}
+
+dmf_sim::MicroparticleArray to_microparticles(const Frame& frame, const ConversionContext& context) {
+  const engine::Snapshot& snapshot = *frame.snapshot;
+  dmf_sim::MicroparticleArray message;
+  message.header.stamp = to_ros_time(frame.stamp);
+  message.header.frame_id = kChipFrame;
+  message.step = snapshot.step;
+  message.time = snapshot.time * context.scene.units.time_s;
+  for (const auto& body : snapshot.microparticles) {
+    message.microparticles.push_back(to_microparticle(body, context.scene.units));
   }
   return message;
 }
@@ -225,8 +296,32 @@ dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context
   message.kind = event.kind;
   message.before = event.before;
   message.after = event.after;
+  message.microparticle = event.microparticle;
   message.message = event.message;
   return message;
+}
+
+std::array<double, 3> to_array(const geometry_msgs::Vector3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
+chip::AddMicroparticle to_command(const dmf_sim::AddMicroparticle::Request& request) {
+  chip::AddMicroparticle command;
+  command.x = request.x;
+  command.y = request.y;
+  command.height = request.height;
+  command.radius = request.radius;
+  command.beads = request.beads;
+  command.smooth = request.smooth != 0;
+  for (const auto& point : request.points) command.points.emplace_back(point.x, point.y, point.z);
+  if (request.mass != 0) command.mass = request.mass;
+  if (request.contact_angle_deg != 0) command.contact_angle_deg = request.contact_angle_deg;
+  if (request.attraction_mdpd != 0) command.attraction = request.attraction_mdpd;
+  command.static_friction = request.static_friction;
+  command.kinetic_friction = request.kinetic_friction;
+  command.rolling_friction = request.rolling_friction;
+  command.magnetic = request.magnetic != 0;
+  return command;
 }
 
 sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContext& context) {
@@ -289,6 +384,17 @@ std::vector<geometry_msgs::TransformStamped> droplet_transforms(const Frame& fra
   return transforms;
 }
 
+std::vector<geometry_msgs::TransformStamped> microparticle_transforms(const Frame& frame,
+                                                                      const ConversionContext& context) {
+  std::vector<geometry_msgs::TransformStamped> transforms;
+  for (const auto& body : frame.snapshot->microparticles) {
+    transforms.push_back(to_transform(microparticle_frame(body.id), body.position * context.display_length(),
+                                      to_ros_time(frame.stamp)));
+    transforms.back().transform.rotation = to_quaternion(body.orientation);
+  }
+  return transforms;
+}
+
 std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
                                                                   ros::Time stamp) {
   std::vector<geometry_msgs::TransformStamped> transforms;
@@ -327,6 +433,7 @@ diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const Conver
                    value("temperature (k_BT)", fmt::format("{:.4f}", snapshot.temperature)),
                    value("moving beads", fmt::format("{}", snapshot.moving_beads)),
                    value("droplets", fmt::format("{}", snapshot.droplets.size())),
+                   value("microparticles", fmt::format("{}", snapshot.microparticles.size())),
                    value("kernel", frame.kernel),
                    value("threads", fmt::format("{}", frame.threads))};
 

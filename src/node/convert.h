@@ -1,15 +1,18 @@
 #pragma once
 #include <diagnostic_msgs/DiagnosticArray.h>
+#include <dmf_sim/AddMicroparticle.h>
 #include <dmf_sim/ChipState.h>
 #include <dmf_sim/Command.h>
 #include <dmf_sim/DropletArray.h>
 #include <dmf_sim/ElectrodeArray.h>
 #include <dmf_sim/Event.h>
 #include <dmf_sim/Layout.h>
+#include <dmf_sim/MicroparticleArray.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
 #include <sensor_msgs/PointCloud2.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,9 +20,9 @@
 #include "chip/scene.h"
 #include "node/frame.h"
 
-/// From the chip's plain values to ROS messages: pure functions, no node needed. SI units, except in fields
-/// that end in _mdpd; what is only looked at (particles, transforms, markers) is scaled up by the display
-/// scale.
+/// Between the chip's plain values and ROS messages: pure functions, no node needed. SI units, except in
+/// fields that end in _mdpd; what is only looked at (particles, transforms, markers) is scaled up by the
+/// display scale.
 namespace dmf::node {
 
 /// What the conversions need to know besides a frame. Constant during a run.
@@ -37,6 +40,7 @@ struct ConversionContext {
 constexpr const char* kChipFrame = "chip";
 std::string electrode_frame(std::uint32_t channel);  ///< chip/electrode_<channel>
 std::string droplet_frame(std::uint32_t id);         ///< chip/droplet_<id>
+std::string microparticle_frame(std::uint32_t id);   ///< chip/microparticle_<id>
 
 ros::Time to_ros_time(std::uint64_t nanoseconds);
 /// 16 hex digits, as dmf_run prints it.
@@ -45,9 +49,14 @@ std::string hash_text(std::uint64_t hash);
 dmf_sim::ChipState to_state(const Frame& frame, const ConversionContext& context);
 dmf_sim::ElectrodeArray to_electrodes(const Frame& frame);
 dmf_sim::DropletArray to_droplets(const Frame& frame, const ConversionContext& context);
+dmf_sim::MicroparticleArray to_microparticles(const Frame& frame, const ConversionContext& context);
 dmf_sim::Layout to_layout(const ConversionContext& context);
 dmf_sim::Command to_command(const CommandNote& command, const ConversionContext& context);
 dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context);
+
+std::array<double, 3> to_array(const geometry_msgs::Vector3& vector);
+/// What is 0 and can't be, or says nothing, is left to its default.
+chip::AddMicroparticle to_command(const dmf_sim::AddMicroparticle::Request& request);
 
 /// Fields x, y, z (m on the screen, float32), id, droplet (uint32, droplet 0 is vapour), speed (m/s on the
 /// chip, float32). @pre frame.has_beads.
@@ -56,6 +65,9 @@ sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContex
 /// chip -> chip/droplet_<id> at each centroid, unrotated, scaled.
 std::vector<geometry_msgs::TransformStamped> droplet_transforms(const Frame& frame,
                                                                 const ConversionContext& context);
+/// chip -> chip/microparticle_<id> at each centre of mass, turned as the body is, scaled.
+std::vector<geometry_msgs::TransformStamped> microparticle_transforms(const Frame& frame,
+                                                                      const ConversionContext& context);
 /// chip -> chip/electrode_<n> at each centroid on the plate, unrotated, scaled.
 std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
                                                                   ros::Time stamp);

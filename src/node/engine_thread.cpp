@@ -45,6 +45,12 @@ std::string describe(const engine::DropletEvent& event) {
   return "";
 }
 
+std::string describe(const engine::MicroparticleEvent& event) {
+  const bool picked_up = event.kind == engine::MicroparticleEvent::Kind::picked_up;
+  return fmt::format("droplet {} {} microparticle {}", event.droplet, picked_up ? "took up" : "lost",
+                     event.microparticle);
+}
+
 }  // namespace
 
 EngineThread::EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings)
@@ -213,6 +219,7 @@ std::shared_ptr<const Frame> EngineThread::make_frame(const engine::ObserveReque
   frame->threads = experiment_->simulation().threads();
   frame->electrodes = experiment_->electrodes();
   frame->rail = experiment_->rail();
+  frame->body_forces = experiment_->simulation().body_forces();
   for (const auto& droplet : frame->snapshot->droplets) {
     frame->channels.push_back(experiment_->channels_under(droplet));
   }
@@ -256,18 +263,33 @@ void EngineThread::collect_scheduled() {
 }
 
 void EngineThread::collect_events() {
-  for (const engine::DropletEvent& event : experiment_->take_events()) {
-    EventNote result;
-    result.step = event.step;
-    result.time = time_of(event.step);
+  std::vector<EventNote> notes;
+  const auto add = [this, &notes](std::uint64_t step, const char* kind,
+                                  const std::string& message) -> EventNote& {
+    EventNote& result = notes.emplace_back();
+    result.step = step;
+    result.time = time_of(step);
     result.stamp = clock_.nanoseconds(result.time);
     result.run = run_;
-    result.kind = kind_name(event.kind);
+    result.kind = kind;
+    result.message = message;
+    return result;
+  };
+  for (const engine::DropletEvent& event : experiment_->take_events()) {
+    EventNote& result = add(event.step, kind_name(event.kind), describe(event));
     result.before = event.from;
     result.after = event.to;
-    result.message = describe(event);
-    outbox_.put(std::move(result));
   }
+  for (const engine::MicroparticleEvent& event : experiment_->take_microparticle_events()) {
+    const bool picked_up = event.kind == engine::MicroparticleEvent::Kind::picked_up;
+    EventNote& result = add(event.step, picked_up ? "picked_up" : "dropped_off", describe(event));
+    (picked_up ? result.after : result.before) = {event.droplet};
+    result.microparticle = event.microparticle;
+  }
+  // At the same step droplets come first: they carry.
+  std::stable_sort(notes.begin(), notes.end(),
+                   [](const EventNote& a, const EventNote& b) { return a.step < b.step; });
+  for (EventNote& result : notes) outbox_.put(std::move(result));
 }
 
 void EngineThread::note(const std::string& kind, const std::string& message) {

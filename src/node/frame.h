@@ -25,6 +25,7 @@ struct Frame {
   bool has_beads = false;  ///< the snapshot was taken with beads
   std::vector<chip::ElectrodeState> electrodes;
   chip::RailState rail;
+  engine::BodyForces body_forces;
   std::vector<std::vector<std::uint32_t>> channels;  ///< under each droplet of the snapshot, in its order
   bool paused = false;
   std::string fault;  ///< empty while the run is sound
@@ -41,7 +42,7 @@ struct CommandNote {
   chip::CommandRecord record;
 };
 
-/// Something that happened, of a droplet or of the run.
+/// Something that happened, to a droplet, to a microparticle or to the run.
 struct EventNote {
   std::uint64_t stamp = 0;  ///< ROS time, ns
   std::uint32_t run = 0;
@@ -49,6 +50,7 @@ struct EventNote {
   double time = 0;                           ///< tau
   std::string kind;                          ///< one of the constants of Event.msg
   std::vector<std::uint32_t> before, after;  ///< droplet ids
+  std::uint32_t microparticle = 0;           ///< id, 0: none
   std::string message;
 };
 

@@ -17,6 +17,8 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
+constexpr float kSeeThrough = 0.25f;  // opacity of a droplet with something inside
+
 // Lengths in r_c.
 constexpr double kPlateThickness = 1.0;
 constexpr double kPadHeight = 0.05;    // above the plate, so that neither flickers through the other
@@ -130,6 +132,77 @@ Marker droplet_label(const engine::DropletObservation& droplet, const Frame& fra
   return result;
 }
 
+/// Amber where it repels the liquid, teal where it attracts it as the liquid itself does. By Young's law with
+/// works of adhesion in proportion to the attractions, cos theta is near 2 A_ls / A_ll - 1.
+std_msgs::ColorRGBA wetting_color(double attraction, double liquid_attraction) {
+  const double f = std::clamp(attraction / liquid_attraction, 0.0, 1.0);
+  return color(0.95 - 0.9 * f, 0.62 - 0.07 * f, 0.1 + 0.5 * f);
+}
+
+/// A marker that moves and turns with a microparticle.
+Marker riding_on(const engine::MicroparticleObservation& body, int type, const Frame& frame,
+                 const ConversionContext& context) {
+  const double s = context.display_length();
+  Marker result = marker("microparticles", body.id, type, frame);
+  result.pose.position = point(s * body.position.x(), s * body.position.y(), s * body.position.z());
+  result.pose.orientation.x = body.orientation.x();
+  result.pose.orientation.y = body.orientation.y();
+  result.pose.orientation.z = body.orientation.z();
+  result.pose.orientation.w = body.orientation.w();
+  return result;
+}
+
+/// A body of points as their spheres, every other one in the second colour.
+Marker cluster(const engine::MicroparticleObservation& body, const Frame& frame,
+               const ConversionContext& context) {
+  const double s = context.display_length();
+  Marker result = riding_on(body, Marker::SPHERE_LIST, frame, context);
+  result.scale.x = result.scale.y = result.scale.z = 2 * s * body.point_radius;
+  result.color = wetting_color(body.attraction, context.scene.parameters.liquid.attraction);
+  for (const Eigen::Vector3d& at : *body.points) {
+    result.points.push_back(point(s * at.x(), s * at.y(), s * at.z()));
+    const bool second = body.magnetic && result.points.size() % 2 == 0;
+    result.colors.push_back(second ? color(0.8, 0.1, 0.1) : result.color);
+  }
+  return result;
+}
+
+/// A beach ball around the origin: stripes from pole (+z) to pole, two colours by turns.
+Marker ball(const engine::MicroparticleObservation& body, const Frame& frame,
+            const ConversionContext& context) {
+  constexpr int kMeridians = 24, kParallels = 12, kPerStripe = 4;
+  constexpr double kPi = 3.14159265358979323846;
+  const double s = context.display_length();
+  Marker result = riding_on(body, Marker::TRIANGLE_LIST, frame, context);
+  result.scale.x = result.scale.y = result.scale.z = 1;
+  const std_msgs::ColorRGBA wetting =
+      wetting_color(body.attraction, context.scene.parameters.liquid.attraction);
+  const std_msgs::ColorRGBA magnet = body.magnetic ? color(0.8, 0.1, 0.1) : color(0.95, 0.95, 0.95);
+  result.color = wetting;
+
+  const double r = s * body.radius;
+  const auto corner = [r](int parallel, int meridian) {  // from the north pole, eastwards
+    const double polar = kPi * parallel / kParallels, east = 2 * kPi * meridian / kMeridians;
+    return point(r * std::sin(polar) * std::cos(east), r * std::sin(polar) * std::sin(east),
+                 r * std::cos(polar));
+  };
+  const auto add = [&result](const std_msgs::ColorRGBA& fill, const auto&... corners) {
+    (result.points.push_back(corners), ...);
+    for (std::size_t i = 0; i < sizeof...(corners); ++i) result.colors.push_back(fill);
+  };
+  for (int m = 0; m < kMeridians; ++m) {
+    const std_msgs::ColorRGBA& fill = m / kPerStripe % 2 == 0 ? wetting : magnet;
+    for (int p = 0; p < kParallels; ++p) {
+      // Counter-clockwise seen from outside; at the poles one of both triangles has no area.
+      const auto north_west = corner(p, m), south_west = corner(p + 1, m);
+      const auto north_east = corner(p, m + 1), south_east = corner(p + 1, m + 1);
+      if (p + 1 < kParallels) add(fill, north_west, south_west, south_east);
+      if (p > 0) add(fill, north_west, south_east, north_east);
+    }
+  }
+  return result;
+}
+
 Marker beads(const char* name_space, std::uint32_t id, const std_msgs::ColorRGBA& fill, const Frame& frame,
              const ConversionContext& context) {
   Marker result = marker(name_space, id, Marker::SPHERE_LIST, frame);
@@ -158,8 +231,12 @@ MarkerArray droplet_markers(const Frame& frame, const ConversionContext& context
   // RViz complains about an empty list, therefore it is taken off instead.
   std::map<std::uint32_t, Marker> lists;
   lists.emplace(0, beads("vapour", 0, color(1, 1, 1, 0.6), frame, context));
+  std::set<std::uint32_t> carrying;
+  for (const auto& body : snapshot.microparticles) carrying.insert(body.droplet);
   for (const auto& droplet : snapshot.droplets) {
-    lists.emplace(droplet.id, beads("droplets", droplet.id, droplet_color(droplet.id), frame, context));
+    std_msgs::ColorRGBA fill = droplet_color(droplet.id);
+    if (carrying.count(droplet.id)) fill.a = kSeeThrough;
+    lists.emplace(droplet.id, beads("droplets", droplet.id, fill, frame, context));
   }
   for (std::size_t i = 0; i < snapshot.positions.size(); ++i) {
     // The tracker may be a few steps older than the beads: one that it counts to a droplet of the past is
@@ -180,20 +257,32 @@ MarkerArray droplet_markers(const Frame& frame, const ConversionContext& context
   return array;
 }
 
-MarkerArray deletions(const std::set<std::uint32_t>& droplets, ros::Time stamp) {
+MarkerArray microparticle_markers(const Frame& frame, const ConversionContext& context) {
   MarkerArray array;
-  for (const std::uint32_t id : droplets) {
-    for (const char* name_space : {"droplets", "droplet_labels"}) {
-      Marker gone;
-      gone.header.frame_id = kChipFrame;
-      gone.header.stamp = stamp;
-      gone.ns = name_space;
-      gone.id = static_cast<std::int32_t>(id);
-      gone.action = Marker::DELETE;
-      gone.pose.orientation.w = 1;
-      array.markers.push_back(gone);
-    }
+  for (const auto& body : frame.snapshot->microparticles) {
+    array.markers.push_back(body.points ? cluster(body, frame, context) : ball(body, frame, context));
   }
+  return array;
+}
+
+MarkerArray deletions(const std::set<std::uint32_t>& droplets, const std::set<std::uint32_t>& microparticles,
+                      ros::Time stamp) {
+  MarkerArray array;
+  const auto take_off = [&array, stamp](const char* name_space, std::uint32_t id) {
+    Marker gone;
+    gone.header.frame_id = kChipFrame;
+    gone.header.stamp = stamp;
+    gone.ns = name_space;
+    gone.id = static_cast<std::int32_t>(id);
+    gone.action = Marker::DELETE;
+    gone.pose.orientation.w = 1;
+    array.markers.push_back(gone);
+  };
+  for (const std::uint32_t id : droplets) {
+    take_off("droplets", id);
+    take_off("droplet_labels", id);
+  }
+  for (const std::uint32_t id : microparticles) take_off("microparticles", id);
   return array;
 }
 

@@ -9,18 +9,24 @@
 
 /// From frames to what RViz draws: pure functions. All in frame chip, scaled by the display scale. Namespaces
 /// and ids are stable: plate (0), electrodes and electrode_labels (channel), droplets and droplet_labels
-/// (droplet id), vapour (0).
+/// (droplet id), microparticles (microparticle id), vapour (0).
 namespace dmf::node {
 
 /// The plate, each electrode coloured by its voltage (grey 0 V, orange at the board's limit), its channel
 /// number.
 visualization_msgs::MarkerArray chip_markers(const Frame& frame, const ConversionContext& context);
 
-/// Each droplet as the spheres of its beads, coloured by id, under a label with id and contact angles; stray
-/// beads in white. @pre frame.has_beads.
+/// Each droplet as the spheres of its beads, coloured by id, see-through while it carries a microparticle,
+/// under a label with id and contact angles; stray beads in white. @pre frame.has_beads.
 visualization_msgs::MarkerArray droplet_markers(const Frame& frame, const ConversionContext& context);
 
-/// Takes droplets that are gone off the screen.
-visualization_msgs::MarkerArray deletions(const std::set<std::uint32_t>& droplets, ros::Time stamp);
+/// Each microparticle as a ball of coloured stripes, so that one sees it turn. One colour tells how it wets,
+/// from amber (it repels the liquid) to teal, the other what a magnet does to it: red when it is magnetic,
+/// else white.
+visualization_msgs::MarkerArray microparticle_markers(const Frame& frame, const ConversionContext& context);
+
+/// Takes droplets and microparticles that are gone off the screen.
+visualization_msgs::MarkerArray deletions(const std::set<std::uint32_t>& droplets,
+                                          const std::set<std::uint32_t>& microparticles, ros::Time stamp);
 
 }  // namespace dmf::node

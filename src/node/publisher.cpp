@@ -24,6 +24,17 @@ bool same(const dmf_sim::ElectrodeArray& a, const dmf_sim::ElectrodeArray& b) {
          a.electrodes == b.electrodes;
 }
 
+/// The ids that were drawn and are no longer among what is observed; `drawn` is brought up to date.
+template <typename Observation>
+std::set<std::uint32_t> take_gone(std::set<std::uint32_t>& drawn, const std::vector<Observation>& observed) {
+  std::set<std::uint32_t> present, gone;
+  for (const Observation& one : observed) present.insert(one.id);
+  std::set_difference(drawn.begin(), drawn.end(), present.begin(), present.end(),
+                      std::inserter(gone, gone.end()));
+  drawn = std::move(present);
+  return gone;
+}
+
 }  // namespace
 
 Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
@@ -34,6 +45,7 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
   state_ = private_handle.advertise<dmf_sim::ChipState>("state", kStateQueue);
   electrodes_ = private_handle.advertise<dmf_sim::ElectrodeArray>("electrodes", kStateQueue, true);
   droplets_ = private_handle.advertise<dmf_sim::DropletArray>("droplets", kStateQueue);
+  microparticles_ = private_handle.advertise<dmf_sim::MicroparticleArray>("microparticles", kStateQueue);
   particles_ = private_handle.advertise<sensor_msgs::PointCloud2>("particles", kDisplayQueue);
   markers_ = private_handle.advertise<visualization_msgs::MarkerArray>("markers", kDisplayQueue);
   commands_ = private_handle.advertise<dmf_sim::Command>(
@@ -93,6 +105,7 @@ void Publisher::publish_frame(const Frame& frame) {
   state_.publish(to_state(frame, context_));
   publish_electrodes(frame);
   droplets_.publish(to_droplets(frame, context_));
+  microparticles_.publish(to_microparticles(frame, context_));
   publish_transforms(frame);
   if (frame.has_beads) {
     if (particles_.getNumSubscribers() > 0) particles_.publish(to_particles(frame, context_));
@@ -115,6 +128,7 @@ void Publisher::publish_transforms(const Frame& frame) {
   if (frame.stamp == transform_stamp_) return;
   transform_stamp_ = frame.stamp;
   transforms_.sendTransform(droplet_transforms(frame, context_));
+  transforms_.sendTransform(microparticle_transforms(frame, context_));
 }
 
 void Publisher::publish_markers(const Frame& frame) {
@@ -127,12 +141,9 @@ void Publisher::publish_markers(const Frame& frame) {
     std::move(more.markers.begin(), more.markers.end(), std::back_inserter(array.markers));
   };
 
-  std::set<std::uint32_t> present, gone;
-  for (const auto& droplet : frame.snapshot->droplets) present.insert(droplet.id);
-  std::set_difference(drawn_droplets_.begin(), drawn_droplets_.end(), present.begin(), present.end(),
-                      std::inserter(gone, gone.end()));
-  drawn_droplets_ = std::move(present);
-  add(deletions(gone, to_ros_time(frame.stamp)));
+  add(microparticle_markers(frame, context_));
+  add(deletions(take_gone(drawn_droplets_, frame.snapshot->droplets),
+                take_gone(drawn_microparticles_, frame.snapshot->microparticles), to_ros_time(frame.stamp)));
 
   if (joined || chip_changed_ || Clock::now() >= next_chip_markers_) {
     add(chip_markers(frame, context_));

@@ -47,8 +47,8 @@ class Publisher {
 
   EngineThread& engine_;
   const ConversionContext& context_;
-  ros::Publisher clock_, state_, electrodes_, droplets_, particles_, markers_, commands_, events_, layout_,
-      diagnostics_;
+  ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, commands_,
+      events_, layout_, diagnostics_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 
@@ -58,7 +58,7 @@ class Publisher {
   // Of the publisher thread.
   dmf_sim::ElectrodeArray last_electrodes_;
   bool electrodes_published_ = false;
-  std::set<std::uint32_t> drawn_droplets_;
+  std::set<std::uint32_t> drawn_droplets_, drawn_microparticles_;
   std::uint32_t marker_subscribers_ = 0;
   std::uint32_t transform_run_ = 0;
   std::uint64_t transform_stamp_ = 0;  ///< ns

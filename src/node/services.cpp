@@ -31,7 +31,9 @@ Services::Services(ros::NodeHandle& private_handle, EngineThread& engine, const 
   advertise("set_wettability", &Services::set_wettability);
   advertise("load_pattern", &Services::load_pattern);
   advertise("dispense_droplet", &Services::dispense_droplet);
+  advertise("add_microparticle", &Services::add_microparticle);
   advertise("remove", &Services::remove);
+  advertise("set_body_forces", &Services::set_body_forces);
   advertise("pause_physics", &Services::pause);
   advertise("unpause_physics", &Services::unpause);
   advertise("step", &Services::step);
@@ -79,8 +81,28 @@ bool Services::dispense_droplet(dmf_sim::DispenseDroplet::Request& request,
   return true;
 }
 
+bool Services::add_microparticle(dmf_sim::AddMicroparticle::Request& request,
+                                 dmf_sim::AddMicroparticle::Response& response) {
+  if (request.contact_angle_deg != 0 && request.attraction_mdpd != 0) {
+    response.message =
+        fmt::format("contact_angle_deg {} and attraction_mdpd {}: allowed one of both, 0 for the other",
+                    request.contact_angle_deg, request.attraction_mdpd);
+    return true;
+  }
+  const chip::Reply reply = engine_.apply(to_command(request));
+  copy(reply, response);
+  response.microparticle = reply.microparticle;
+  return true;
+}
+
 bool Services::remove(dmf_sim::Remove::Request& request, dmf_sim::Remove::Response& response) {
-  copy(engine_.apply(chip::Remove{request.droplet}), response);
+  copy(engine_.apply(chip::Remove{request.droplet, request.microparticle}), response);
+  return true;
+}
+
+bool Services::set_body_forces(dmf_sim::SetBodyForces::Request& request,
+                               dmf_sim::SetBodyForces::Response& response) {
+  copy(engine_.apply(chip::SetBodyForces{to_array(request.gravity), to_array(request.magnetic)}), response);
   return true;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
+#include <dmf_sim/AddMicroparticle.h>
 #include <dmf_sim/Checkpoint.h>
 #include <dmf_sim/DispenseDroplet.h>
 #include <dmf_sim/GetLayout.h>
 #include <dmf_sim/GetState.h>
 #include <dmf_sim/LoadPattern.h>
 #include <dmf_sim/Remove.h>
+#include <dmf_sim/SetBodyForces.h>
 #include <dmf_sim/SetElectrodeVoltages.h>
 #include <dmf_sim/SetElectrodes.h>
 #include <dmf_sim/SetHv.h>
@@ -41,7 +43,10 @@ class Services {
   bool load_pattern(dmf_sim::LoadPattern::Request& request, dmf_sim::LoadPattern::Response& response);
   bool dispense_droplet(dmf_sim::DispenseDroplet::Request& request,
                         dmf_sim::DispenseDroplet::Response& response);
+  bool add_microparticle(dmf_sim::AddMicroparticle::Request& request,
+                         dmf_sim::AddMicroparticle::Response& response);
   bool remove(dmf_sim::Remove::Request& request, dmf_sim::Remove::Response& response);
+  bool set_body_forces(dmf_sim::SetBodyForces::Request& request, dmf_sim::SetBodyForces::Response& response);
   bool pause(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool unpause(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool step(dmf_sim::Step::Request& request, dmf_sim::Step::Response& response);

@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
   app.add_option("--kernel", options.kernel,
                  "auto, " + fmt::format("{}", fmt::join(engine::available_kernels(), ", ")))
       ->capture_default_str();
-  auto* output = app.add_option("--out", options.output, "folder for droplets.csv and checkpoints");
+  auto* output =
+      app.add_option("--out", options.output, "folder for droplets.csv, microparticles.csv and checkpoints");
   app.add_option("--checkpoint-every", options.checkpoint_every, "steps between checkpoints in --out")
       ->needs(output);
   app.add_option("--resume", options.resume, "go on from the newest good checkpoint of this folder")

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -27,39 +28,92 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// One line a look and droplet, in SI units beside reduced ones.
-class DropletLog {
+/// A table in a file that is there once it has a line. Without a folder it keeps nothing.
+class Table {
  public:
-  DropletLog(const std::string& folder, bool append) {
-    if (folder.empty()) return;
-    std::filesystem::create_directories(folder);
-    const std::string file = folder + "/droplets.csv";
-    const bool fresh = !append || !std::filesystem::exists(file);
-    out_.open(file, fresh ? std::ios::trunc : std::ios::app);
-    if (!out_) throw std::runtime_error(fmt::format("{}: can't be written", file));
-    if (fresh)
-      out_ << "step,time_mdpd,time_s,droplet,beads,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vx_mm_per_s,vy_mm_"
-              "per_s,"
-              "footprint_area_mdpd,height_mdpd,advancing_deg,receding_deg,temperature\n";
+  Table(const std::string& folder, const char* name, bool append, const char* head)
+      : file_(folder.empty() ? "" : folder + "/" + name), append_(append), head_(head) {}
+
+  bool wanted() const { return !file_.empty(); }
+
+  void add(const std::string& line) {
+    if (!wanted()) return;
+    if (!out_.is_open()) open();
+    out_ << line << '\n';
   }
 
-  void write(const engine::Snapshot& snapshot, const engine::Units& units) {
+  void flush() {
     if (!out_.is_open()) return;
-    const double to_mm_per_s = units.velocity_m_per_s() * 1e3;
-    for (const auto& d : snapshot.droplets)
-      out_ << fmt::format(
-          "{},{:.6g},{:.6g},{},{},{:.5f},{:.5f},{:.5f},{:.6f},{:.6f},{:.4f},{:.4f},{:.3f},{:.3f},{:.2f},{:."
-          "2f},{:.5f}\n",
-          snapshot.step, snapshot.time, snapshot.time * units.time_s, d.id, d.beads, d.centroid.x(),
-          d.centroid.y(), d.centroid.z(), d.velocity.x(), d.velocity.y(), d.velocity.x() * to_mm_per_s,
-          d.velocity.y() * to_mm_per_s, d.footprint_area, d.height, d.advancing_angle.value_or(NAN),
-          d.receding_angle.value_or(NAN), snapshot.temperature);
     out_.flush();
-    if (!out_) throw std::runtime_error("droplets.csv: write failed; is the disk full?");
+    if (!out_) throw std::runtime_error(fmt::format("{}: write failed; is the disk full?", file_));
   }
 
  private:
+  void open() {
+    const bool fresh = !append_ || !std::filesystem::exists(file_);
+    out_.open(file_, fresh ? std::ios::trunc : std::ios::app);
+    if (!out_) throw std::runtime_error(fmt::format("{}: can't be written", file_));
+    if (fresh) out_ << head_ << '\n';
+  }
+
+  std::string file_;
+  bool append_;
+  const char* head_;
   std::ofstream out_;
+};
+
+/// One line a look and droplet, and a look and microparticle; droplets in SI units beside reduced ones.
+class Log {
+ public:
+  Log(const std::string& folder, bool append)
+      : droplets_(
+            folder, "droplets.csv", append,
+            "step,time_mdpd,time_s,droplet,beads,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vx_mm_per_s,vy_mm_"
+            "per_s,footprint_area_mdpd,height_mdpd,advancing_deg,receding_deg,temperature"),
+        microparticles_(
+            folder, "microparticles.csv", append,
+            "step,time_mdpd,time_s,microparticle,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vz_mdpd,wx_mdpd,"
+            "wy_mdpd,wz_mdpd,contact_fraction,normal_force_mdpd,drive_x_mdpd,drive_y_mdpd,"
+            "drive_z_mdpd,friction_x_mdpd,friction_y_mdpd,immersion,droplet,place") {
+    if (!folder.empty()) std::filesystem::create_directories(folder);
+  }
+
+  void write(const engine::Snapshot& snapshot, const engine::Units& units) {
+    if (!droplets_.wanted()) return;
+    for (const auto& droplet : snapshot.droplets) add(droplet, snapshot, units);
+    for (const auto& body : snapshot.microparticles) add(body, snapshot, units);
+    droplets_.flush();
+    microparticles_.flush();
+  }
+
+ private:
+  void add(const engine::DropletObservation& d, const engine::Snapshot& snapshot,
+           const engine::Units& units) {
+    const double to_mm_per_s = units.velocity_m_per_s() * 1e3;
+    droplets_.add(fmt::format(
+        "{},{:.6g},{:.6g},{},{},{:.5f},{:.5f},{:.5f},{:.6f},{:.6f},{:.4f},{:.4f},{:.3f},{:.3f},{:.2f},{:."
+        "2f},{:.5f}",
+        snapshot.step, snapshot.time, snapshot.time * units.time_s, d.id, d.beads, d.centroid.x(),
+        d.centroid.y(), d.centroid.z(), d.velocity.x(), d.velocity.y(), d.velocity.x() * to_mm_per_s,
+        d.velocity.y() * to_mm_per_s, d.footprint_area, d.height, d.advancing_angle.value_or(NAN),
+        d.receding_angle.value_or(NAN), snapshot.temperature));
+  }
+
+  void add(const engine::MicroparticleObservation& m, const engine::Snapshot& snapshot,
+           const engine::Units& units) {
+    constexpr std::array<const char*, 4> kPlaces{"dry", "front", "rear", "inside"};
+    const auto vector = [](const engine::Vector3d& v) {
+      return fmt::format("{:.6f},{:.6f},{:.6f}", v.x(), v.y(), v.z());
+    };
+    microparticles_.add(
+        fmt::format("{},{:.6g},{:.6g},{},{},{},{},{:.3f},{:.5f},{},{:.5f},{:.5f},{:.4f},{},{}", snapshot.step,
+                    snapshot.time, snapshot.time * units.time_s, m.id, vector(m.position), vector(m.velocity),
+                    vector(m.angular_velocity), m.contact_fraction, m.normal_force, vector(m.drive_force),
+                    m.friction_force.x(), m.friction_force.y(), m.immersion, m.droplet,
+                    kPlaces.at(static_cast<std::size_t>(m.place))));
+  }
+
+  Table droplets_, microparticles_;
 };
 
 /// A line that rewrites itself on a terminal, at most five times a second.
@@ -126,7 +180,7 @@ RunResult headless_run(const RunOptions& options) {
   const chip::Scene scene = chip::load_scene(options.scene);
   chip::Experiment experiment(scene, {options.threads, options.kernel}, options.seed);
   if (!options.resume.empty()) resume_from(options.resume, experiment);
-  DropletLog log(options.output, !options.resume.empty());
+  Log log(options.output, !options.resume.empty());
 
   interrupted = false;
   const auto previous_int = std::signal(SIGINT, on_interrupt),

@@ -15,7 +15,7 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   int threads = 0;
   std::string kernel = "auto";
-  std::string output;                  ///< folder for droplets.csv and checkpoints; empty: none
+  std::string output;  ///< folder for droplets.csv, microparticles.csv, checkpoints; empty: none
   std::uint64_t checkpoint_every = 0;  ///< steps; 0: none
   std::string resume;                  ///< folder with checkpoints to go on from
   bool json = false;                   ///< last line of standard output is JSON

@@ -10,6 +10,29 @@
 namespace dmf::chip {
 namespace {
 
+AddMicroparticle sphere() {
+  AddMicroparticle command;
+  command.x = -1e-5 / 3;
+  command.y = 1e-4;
+  command.height = 1e-6 / 7;
+  command.radius = 1e-5;
+  command.beads = 612;
+  command.smooth = true;
+  command.contact_angle_deg = 109.1;
+  command.kinetic_friction = 0.1 + 0.2;
+  command.magnetic = true;
+  return command;
+}
+
+AddMicroparticle dumbbell() {
+  AddMicroparticle command;
+  command.radius = 1e-5;
+  command.points = {{-1e-5 / 3, 0, 0}, {1e-5 / 3, 0, 0.1}};
+  command.mass = 1e-13 / 3;
+  command.attraction = -20;
+  return command;
+}
+
 std::vector<Command> one_of_each() {
   return {SetElectrodes{{0, 4294967295u}},
           SetElectrodes{},
@@ -19,7 +42,11 @@ std::vector<Command> one_of_each() {
           LoadPattern{"for\"ward\n\xc3\xa4 \x01"},
           DispenseDroplet{-1e-5 / 3, 2e-4, 4.1887902047863905e-15},
           Remove{7},
-          Reset{}};
+          Reset{},
+          sphere(),
+          dumbbell(),
+          Remove{0, 3},
+          SetBodyForces{{0, 1.0 / 3, -9.81}, {1e-9 / 3, 0, -0.0}}};
 }
 
 TEST(CommandJson, RoundTripsToTheLastBit) {
@@ -38,10 +65,30 @@ TEST(CommandJson, RoundTripsToTheLastBit) {
             "for\"ward\n\xc3\xa4 \x01");
 }
 
+TEST(CommandJson, AMicroparticleKeepsWhatWasLeftToItsDefaults) {
+  const auto ball = std::get<AddMicroparticle>(command_from_json(to_json(sphere())));
+  EXPECT_EQ(ball.x, sphere().x);
+  EXPECT_EQ(ball.height, sphere().height);
+  EXPECT_EQ(ball.contact_angle_deg, 109.1);
+  EXPECT_EQ(ball.kinetic_friction, 0.1 + 0.2);
+  EXPECT_FALSE(ball.mass);
+  EXPECT_TRUE(ball.points.empty());
+  EXPECT_TRUE(ball.magnetic && ball.smooth);
+  const auto body = std::get<AddMicroparticle>(command_from_json(to_json(dumbbell())));
+  EXPECT_EQ(body.points, dumbbell().points);
+  EXPECT_EQ(body.mass, 1e-13 / 3);
+  EXPECT_EQ(body.attraction, -20);
+  EXPECT_EQ(body.beads, 0u);
+  EXPECT_FALSE(body.contact_angle_deg || body.kinetic_friction);
+}
+
 TEST(CommandJson, LooksAsDocumented) {
   EXPECT_EQ(to_json(SetHv{63, 1000, true}),
             R"({"command":"set_hv","voltage":63.0,"frequency":1000.0,"enabled":true})");
   EXPECT_EQ(to_json(Reset{}), R"({"command":"reset"})");
+  EXPECT_EQ(to_json(Remove{0, 3}), R"({"command":"remove","microparticle":3})");
+  EXPECT_EQ(to_json(SetBodyForces{{0, 0, -9.81}, {}}),
+            R"({"command":"set_body_forces","gravity":[0.0,0.0,-9.81],"magnetic":[0.0,0.0,0.0]})");
 }
 
 TEST(CommandJson, EveryCommandHasTheNameOfItsService) {
@@ -61,6 +108,10 @@ TEST(CommandJson, WhatIsWrongIsNamed) {
   EXPECT_TRUE(holds(refused(R"({"command":"fly"})"), "command: fly, allowed: set_electrodes, set_hv"));
   EXPECT_TRUE(holds(refused(R"({"voltage":5})"), "command: missing"));
   EXPECT_TRUE(holds(refused(R"({"command":"remove","droplet":1,"fast":true})"), "fast: unknown key"));
+  EXPECT_TRUE(holds(refused(R"({"command":"remove","droplet":1,"microparticle":1})"),
+                    "microparticle: given together with droplet"));
+  EXPECT_TRUE(holds(refused(R"({"command":"set_body_forces","gravity":[0,1]})"),
+                    "gravity: a list of 2, allowed: a list of 3"));
   EXPECT_TRUE(
       holds(refused(R"({"command":"set_electrodes","channels":[-1]})"), "channels[0]: -1, allowed: a whole"));
   EXPECT_TRUE(holds(refused("{"), "is not YAML"));

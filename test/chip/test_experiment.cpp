@@ -49,11 +49,12 @@ void run(Experiment& experiment, int steps) {
 
 TEST(ShippedScenes, AllStart) {
   for (const char* name :
-       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array"}) {
+       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array", "delivery_line"}) {
     const Scene shipped = load_scene(name);
     Experiment experiment(shipped, {});
     experiment.step();
     EXPECT_EQ(experiment.observe()->droplets.size(), shipped.droplets.size()) << name;
+    EXPECT_EQ(experiment.observe()->microparticles.size(), shipped.microparticles.size()) << name;
     EXPECT_EQ(experiment.observe()->vapour_beads, 0u) << name;
   }
 }
@@ -133,6 +134,22 @@ TEST(Plate, SceneMayStartWithAProgram) {
   EXPECT_NEAR(chip.commanded_angle(10, 4), 120, 1e-9);
 }
 
+/// A sphere at rest on the plate at (x, 0), m.
+AddMicroparticle body(double x, double radius) {
+  AddMicroparticle command;
+  command.x = x;
+  command.radius = radius;
+  return command;
+}
+
+/// A sound one but for one member.
+template <typename Member, typename Value>
+AddMicroparticle with(Member AddMicroparticle::*member, Value value) {
+  AddMicroparticle command = body(0, 1e-5);
+  command.*member = value;
+  return command;
+}
+
 TEST(RefusedCommands, SayWhatIsWrongAndChangeNotOneBit) {
   Experiment chip = start();
   chip.apply(SetHv{63, 0, true});
@@ -178,7 +195,27 @@ TEST(RefusedCommands, SayWhatIsWrongAndChangeNotOneBit) {
       {DispenseDroplet{0, 0, kNan}, "volume nan m^3"},
       {DispenseDroplet{kNan, kInfinity, 1e-14}, "x nan m: allowed: a finite number; y inf m"},
       {Remove{42}, "droplet 42 does not exist"},
-      {Remove{0}, "droplet 0 does not exist"},
+      {Remove{0}, "droplet 0 and microparticle 0: allowed the id of one"},
+      {Remove{1, 1}, "droplet 1 and microparticle 1: allowed the id of one"},
+      {body(kNan, 1e-5), "x nan m: allowed: a finite number"},
+      {body(0, 0), "radius 0 m: allowed more than 0 m"},
+      {body(0, kInfinity), "radius inf m"},
+      {with(&AddMicroparticle::height, -1e-6), "height -1e-06 m: allowed 0 m or more"},
+      {with(&AddMicroparticle::mass, -1e-13), "mass -1e-13 kg: allowed more than 0 kg"},
+      {with(&AddMicroparticle::contact_angle_deg, 20.0), "contact angle: 20 degrees, allowed: "},
+      {body(-1.2e-4, 1e-5), "to the liquid"},
+      {body(1.95e-4, 1e-5), "center's x 19.5, allowed: -19 to 19"},
+      {body(0, 3e-4), "allowed: 0.5 to 20"},
+      {with(&AddMicroparticle::attraction, 5.0), "attraction: 5, allowed"},
+      {with(&AddMicroparticle::attraction, kNan), "attraction: nan, allowed"},
+      {with(&AddMicroparticle::static_friction, -0.1), "static_friction: -0.1, allowed"},
+      {with(&AddMicroparticle::kinetic_friction, 0.3), "kinetic_friction: 0.3, allowed"},
+      {with(&AddMicroparticle::rolling_friction, kInfinity), "rolling_friction: inf, allowed"},
+      {with(&AddMicroparticle::beads, 613), "beads: 613, allowed"},
+      {Remove{0, 42}, "microparticle 42 does not exist"},
+      {SetBodyForces{{1e12, 0, 0}, {}}, "gravity"},
+      {SetBodyForces{{0, kNan, 0}, {kInfinity, 0, 0}},
+       "gravity's y nan m/s^2: allowed: a finite number; magnetic force's x inf N"},
   };
   for (const auto& [command, message] : cases) {
     const Reply reply = chip.apply(command);
@@ -212,6 +249,79 @@ TEST(Droplets, AreDispensedAndRemoved) {
   ASSERT_TRUE(chip.apply(Remove{droplet.id}).success);
   run(chip, 20);
   EXPECT_EQ(chip.observe()->droplets.size(), 1u);
+}
+
+TEST(Microparticles, AreAddedAndRemoved) {
+  Experiment chip = start();
+  const Reply added = chip.apply(body(0, 1e-5));
+  ASSERT_TRUE(added.success) << added.message;
+  EXPECT_EQ(added.microparticle, 1u);
+  EXPECT_EQ(added.message, "microparticle 1 added");
+  EXPECT_FALSE(chip.apply(body(0.5e-5, 1e-5)).success) << "the place is taken";
+  EXPECT_EQ(chip.apply(with(&AddMicroparticle::height, 3e-5)).microparticle, 2u) << "above it there is room";
+  run(chip, 20);
+  const auto seen = chip.observe()->microparticles;
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_NEAR(seen[0].position.z(), 1, 0.02) << "rests on the plate";
+  EXPECT_NEAR(seen[1].position.z(), 4, 0.02);
+  EXPECT_EQ(seen[0].beads, 612u);
+  EXPECT_NEAR(seen[0].mass, 612, 1e-9);
+  ASSERT_TRUE(chip.apply(Remove{0, 1}).success);
+  EXPECT_TRUE(holds(chip.apply(Remove{0, 1}).message, "microparticle 1 does not exist"));
+  ASSERT_EQ(chip.observe()->microparticles.size(), 1u);
+  EXPECT_EQ(chip.apply(body(0, 1e-5)).microparticle, 3u) << "no id is given twice";
+  EXPECT_NO_THROW(run(chip, 20));
+}
+
+TEST(Microparticles, OfASceneAreThereFromTheStart) {
+  const std::string schedule =
+      "microparticles: [{center: [2, 0], radius: 1, contact_angle: 109}]\n"
+      "body_forces: {gravity: [0, 0, -0.01]}\n"
+      "schedule:\n"
+      "  - {at: 0.02, add_microparticle: {x: 80 um, y: 0, radius: 1, magnetic: true}}\n"
+      "  - {at: 0.04, set_body_forces: {magnetic: [1 nN, 0, 0]}}\n"
+      "  - {at: 0.06, remove: {microparticle: 1}}\n";
+  Experiment chip = start(schedule);
+  ASSERT_EQ(chip.observe()->microparticles.size(), 1u);
+  EXPECT_DOUBLE_EQ(chip.observe()->microparticles[0].attraction,
+                   load_microparticle_curve(chip.scene()).attraction(109));
+  EXPECT_EQ(chip.simulation().body_forces().gravity.z(), -0.01);
+  run(chip, 3);
+  ASSERT_EQ(chip.observe()->microparticles.size(), 2u);
+  EXPECT_NEAR(chip.observe()->microparticles[1].position.x(), 8, 1e-3);
+  run(chip, 4);
+  ASSERT_EQ(chip.observe()->microparticles.size(), 1u);
+  EXPECT_EQ(chip.observe()->microparticles[0].id, 2u);
+  EXPECT_NEAR(chip.simulation().body_forces().magnetic.x() * chip.scene().units.force_N(), 1e-9, 1e-20);
+  EXPECT_TRUE(chip.simulation().body_forces().gravity.isZero(0)) << "all of it is set anew";
+  const std::uint64_t later = hash(chip);
+  ASSERT_TRUE(chip.apply(Reset{}).success);
+  EXPECT_EQ(chip.simulation().body_forces().gravity.z(), -0.01);
+  run(chip, 7);
+  EXPECT_EQ(hash(chip), later);
+  EXPECT_TRUE(holds(refusal([] { start("microparticles: [{center: [-12, 0], radius: 1}]\n"); }),
+                    "scene.yaml: microparticles[0]: microparticle at (-12"));
+}
+
+TEST(BodyForces, AMagnetMovesOnlyWhatIsMagnetic) {
+  Experiment chip = start();
+  AddMicroparticle ball = with(&AddMicroparticle::magnetic, true);
+  ball.static_friction = ball.rolling_friction = 0;
+  ball.height = 2e-5;
+  ASSERT_TRUE(chip.apply(ball).success);
+  ball.magnetic = false;
+  ball.x = 6e-5;
+  ASSERT_TRUE(chip.apply(ball).success);
+  EXPECT_TRUE(holds(chip.apply(SetBodyForces{{}, {0, 0, 1}}).message, "magnetic")) << "1 N throws it off";
+  const engine::Units& units = chip.scene().units;
+  ASSERT_TRUE(chip.apply(SetBodyForces{{}, {6.12 * units.force_N(), 0, 0}}).success);
+  run(chip, 100);
+  const auto seen = chip.observe()->microparticles;
+  EXPECT_NEAR(seen.at(0).velocity.x(), 0.01, 1e-4) << "6.12 k_BT / r_c on 612 beads for one tau";
+  EXPECT_NEAR(seen.at(1).velocity.x(), 0, 1e-9);
+  ASSERT_TRUE(chip.apply(SetBodyForces{}).success);
+  run(chip, 10);
+  EXPECT_NEAR(chip.observe()->microparticles.at(0).velocity.x(), 0.01, 1e-4) << "switched off";
 }
 
 TEST(Droplets, ChannelsUnderAFootprintAreThoseItOverlaps) {
@@ -286,7 +396,10 @@ void drive(Experiment& chip) {
   chip.apply(LoadPattern{"walk"});
   run(chip, 9);
   chip.apply(DispenseDroplet{1e-4, 0, 3.4e-14});
-  run(chip, 30);
+  chip.apply(with(&AddMicroparticle::contact_angle_deg, 109.0));
+  run(chip, 10);
+  chip.apply(SetBodyForces{{0, 0, -1e3 / 3}, {}});
+  run(chip, 20);
 }
 
 TEST(History, AndSceneGiveTheSameRunAgain) {

@@ -27,7 +27,7 @@ std::string refused(const std::string& more) {
 
 TEST(ShippedScenes, AllLoad) {
   for (const char* name :
-       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array"}) {
+       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array", "delivery_line"}) {
     const Scene scene = load_scene(name);
     EXPECT_EQ(scene.name, name);
     EXPECT_FALSE(scene.description.empty()) << name;
@@ -121,6 +121,90 @@ TEST(Scene, ChoosesTheIntegrator) {
   EXPECT_EQ(parse("").parameters.integrator, engine::Integrator::groot_warren);
   EXPECT_EQ(parse("integrator: baoab\n").parameters.integrator, engine::Integrator::baoab);
   EXPECT_TRUE(holds(refused("integrator: euler\n"), "integrator: euler, allowed: groot_warren, baoab"));
+}
+
+TEST(Scene, AMicroparticleIsLansUnlessToldOtherwise) {
+  const Scene scene = parse("microparticles: [{center: [-15, 0], radius: 1}]\n");
+  ASSERT_EQ(scene.microparticles.size(), 1u);
+  const engine::MicroparticlePlacement& body = scene.microparticles[0];
+  EXPECT_EQ(body.center, Eigen::Vector2d(-15, 0));
+  EXPECT_FALSE(body.z) << "it rests on the wall";
+  EXPECT_FALSE(body.smooth);
+  EXPECT_TRUE(
+      parse("microparticles: [{center: [-15, 0], radius: 1, smooth: true}]\n").microparticles[0].smooth);
+  EXPECT_EQ(body.attraction, -15);
+  EXPECT_EQ(body.static_friction, 0.2);
+  EXPECT_FALSE(body.kinetic_friction) << "equal to the static one";
+  EXPECT_EQ(body.rolling_friction, 0.1);
+  EXPECT_EQ(scene.parameters.microparticles.contact, engine::ContactModel::lan2016);
+  EXPECT_TRUE(scene.body_forces.gravity.isZero(0) && scene.body_forces.magnetic.isZero(0));
+}
+
+TEST(Scene, AMicroparticleSaysItsShapeSurfaceMassAndFriction) {
+  const Scene scene = parse(
+      "microparticles:\n"
+      "  - {center: [-15, 0, 2], radius: 10 um, beads: 312, contact_angle: 109 deg, mass: 500, "
+      "static_friction: 0.8, kinetic_friction: 0.6, rolling_friction: 0.4, magnetic: true}\n"
+      "  - {center: [15, 0], radius: 0.5, points: [[-1, 0, 0], [10 um, 0, 0]], attraction: -20}\n"
+      "microparticle_model: {contact: coulomb, elastic_modulus: 1e5, wall_attraction: -2, "
+      "liquid_repulsion: 4, particle_adhesion: 50, counts_own_beads: false, counts_liquid: false, "
+      "counted_by_liquid: false, calibration: lan2016}\n");
+  ASSERT_EQ(scene.microparticles.size(), 2u);
+  const engine::MicroparticlePlacement& sphere = scene.microparticles[0];
+  EXPECT_EQ(sphere.z, 2);
+  EXPECT_NEAR(sphere.radius, 1, 1e-12);
+  EXPECT_EQ(sphere.beads, 312u);
+  EXPECT_DOUBLE_EQ(sphere.attraction, engine::ContactAngleCurve::lan2016().attraction(109));
+  EXPECT_EQ(sphere.mass, 500);
+  EXPECT_EQ(sphere.static_friction, 0.8);
+  EXPECT_EQ(sphere.kinetic_friction, 0.6);
+  EXPECT_EQ(sphere.rolling_friction, 0.4);
+  EXPECT_TRUE(sphere.magnetic);
+  const engine::MicroparticlePlacement& dumbbell = scene.microparticles[1];
+  ASSERT_EQ(dumbbell.points.size(), 2u);
+  EXPECT_TRUE(dumbbell.points[1].isApprox(Eigen::Vector3d(1, 0, 0)));
+  EXPECT_EQ(dumbbell.attraction, -20);
+  const engine::MicroparticleParameters& model = scene.parameters.microparticles;
+  EXPECT_EQ(model.contact, engine::ContactModel::coulomb);
+  EXPECT_EQ(model.elastic_modulus, 1e5);
+  EXPECT_EQ(model.wall_attraction, -2);
+  EXPECT_EQ(model.liquid_repulsion, 4);
+  EXPECT_EQ(model.particle_adhesion, 50);
+  EXPECT_FALSE(model.counts_own_beads || model.counts_liquid || model.counted_by_liquid);
+}
+
+TEST(Scene, BodyForcesMayBeWrittenInSi) {
+  const Scene scene = parse("body_forces: {gravity: [0, 0, -9.81 m/s^2], magnetic: [1 nN, 0, -2]}\n");
+  const double tau = scene.units.time_s, r_c = scene.units.length_m;
+  EXPECT_NEAR(scene.body_forces.gravity.z() * r_c / (tau * tau), -9.81, 1e-12);
+  EXPECT_NEAR(scene.body_forces.magnetic.x() * scene.units.force_N(), 1e-9, 1e-21);
+  EXPECT_EQ(scene.body_forces.magnetic.z(), -2);
+  EXPECT_TRUE(parse("body_forces: {magnetic: [0, 0, 1]}\n").body_forces.gravity.isZero(0));
+}
+
+TEST(Scene, EverythingWrongWithMicroparticlesIsToldAtOnce) {
+  const std::string text = refused(
+      "microparticles:\n"
+      "  - {center: [-15, 0], raduis: 1}\n"
+      "  - {center: [1], radius: 0, mass: 5 m}\n"
+      "  - {center: [15, 0], radius: 1, beads: 612, points: [[0, 0]]}\n"
+      "  - {center: [15, 0], radius: 1, attraction: -15, contact_angle: 20}\n"
+      "microparticle_model: {contact: hertz, calibration: nope}\n"
+      "body_forces: {gravity: [0, -9.81 m], magnetic: [0, 0, 1 m/s^2]}\n");
+  EXPECT_TRUE(holds(text, "scene.yaml:9: microparticles[0].radius: missing"));
+  EXPECT_TRUE(holds(text, "scene.yaml:9: microparticles[0].raduis: unknown key, did you mean `radius`?"));
+  EXPECT_TRUE(holds(text, "scene.yaml:10: microparticles[1].center: a list of 1, allowed: a list of 2 to 3"));
+  EXPECT_TRUE(holds(text, "scene.yaml:10: microparticles[1].radius: 0, allowed: more than 0 r_c"));
+  EXPECT_TRUE(holds(text, "scene.yaml:10: microparticles[1].mass: 5 m, allowed: a finite number beads"));
+  EXPECT_TRUE(holds(text, "scene.yaml:11: microparticles[2].beads: given together with points"));
+  EXPECT_TRUE(holds(text, "scene.yaml:11: microparticles[2].points[0]: a list of 2"));
+  EXPECT_TRUE(holds(text, "scene.yaml:12: microparticles[3].contact_angle: given together with attraction"));
+  EXPECT_TRUE(holds(text, "scene.yaml:13: microparticle_model.contact: hertz, allowed: lan2016, coulomb"));
+  EXPECT_TRUE(holds(text, "scene.yaml:13: microparticle_model.calibration: nope: there is no such file"));
+  EXPECT_TRUE(holds(text, "scene.yaml:14: body_forces.gravity: a list of 2, allowed: a list of 3 numbers"));
+  EXPECT_TRUE(holds(text, "scene.yaml:14: body_forces.magnetic[2]: 1 m/s^2, allowed: a finite number"));
+  EXPECT_TRUE(holds(refused("microparticles: [{center: [15, 0], radius: 1, contact_angle: 20}]\n"),
+                    "scene.yaml:8: microparticles[0].contact_angle: contact angle: 20 degrees, allowed: 40"));
 }
 
 TEST(Scene, CommandsAreHeldToWhatTheChipCanDo) {
@@ -251,6 +335,15 @@ TEST_F(OtherConfig, IsFoundThroughTheEnvironment) {
   write("scenes/small.yaml",
         "domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\nwettability: {calibration: mine, rest_angle: 150}\n");
   EXPECT_TRUE(holds(refusal([] { load_scene("small"); }), "allowed: 60 to 120 degrees"));
+}
+
+TEST_F(OtherConfig, HoldsTheCalibrationOfMicroparticles) {
+  write("calibration/glass.yaml", "description: d\ncommand: c\npoints: [[-20, 60, 1], [-10, 120, 1]]\n");
+  const Scene scene = parse(
+      "microparticle_model: {calibration: glass}\n"
+      "microparticles: [{center: [-15, 0], radius: 1, contact_angle: 90}]\n");
+  EXPECT_DOUBLE_EQ(scene.microparticles.at(0).attraction, -15);
+  EXPECT_EQ(load_microparticle_curve(scene).max_angle(), 120);
 }
 
 TEST_F(OtherConfig, ACalibrationThatIsBrokenIsNamedInTheScene) {

@@ -24,6 +24,16 @@ TEST(YamlReader, BareNumbersAreReducedAndUnitsAreConverted) {
   EXPECT_NO_THROW(root.finish());
 }
 
+TEST(YamlReader, MassesAccelerationsAndForcesAreConvertedToo) {
+  YamlReader root = read("a: 2 ng\nb: 9.81 m/s^2\nc: 1 nN\nd: 612\n");
+  root.set_units({1e-5, 1e-13, 1e-6});
+  EXPECT_DOUBLE_EQ(root.quantity("a", Dimension::mass, {}), 20);
+  EXPECT_DOUBLE_EQ(root.quantity("b", Dimension::acceleration, {}), 9.81e-7);
+  EXPECT_DOUBLE_EQ(root.quantity("c", Dimension::force, {}), 1e-3);
+  EXPECT_DOUBLE_EQ(root.quantity("d", Dimension::mass, {}), 612);
+  EXPECT_NO_THROW(root.finish());
+}
+
 TEST(YamlReader, EverythingWrongIsToldAtOnceByRisingLine) {
   YamlReader root = read("tiem_step: 0.01\nlength: 5 ms\nsub:\n  on: maybe\n  extra: 1\nangle: 200\n");
   root.set_units({1, 1, 1});

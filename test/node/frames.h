@@ -18,7 +18,8 @@ inline chip::Scene tiny_scene_in_round_units() {
   return scene;
 }
 
-/// A frame as an engine might leave it: droplet 5 with two beads, droplet 7 with one, one stray bead.
+/// A frame as an engine might leave it: droplet 5 with two beads, droplet 7 with one, one stray bead,
+/// microparticle 3 at the rear of droplet 5.
 inline std::shared_ptr<Frame> example_frame(const chip::Scene& scene) {
   auto snapshot = std::make_shared<engine::Snapshot>();
   snapshot->step = 1200;
@@ -46,6 +47,25 @@ inline std::shared_ptr<Frame> example_frame(const chip::Scene& scene) {
   droplet.id = 7;
   droplet.beads = 1;
   snapshot->droplets.push_back(droplet);
+  engine::MicroparticleObservation body;
+  body.id = 3;
+  body.radius = 1.5;
+  body.magnetic = true;
+  body.beads = 612;
+  body.mass = 600;
+  body.attraction = -15;
+  body.position = {1, 2, 1.5};
+  body.orientation = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitY());
+  body.velocity = {0.5, 0, 0};
+  body.angular_velocity = {0, 0.25, 0};
+  body.contact_fraction = 0.75;
+  body.normal_force = 20;
+  body.drive_force = {4, 0, -20};
+  body.friction_force = {-2, 0, 0};
+  body.immersion = 0.9;
+  body.droplet = 5;
+  body.place = engine::MicroparticlePlace::rear;
+  snapshot->microparticles.push_back(body);
   snapshot->positions = {{1, 2, 3}, {1.5, 2, 3}, {-4, 0, 1}, {8, 8, 8}};
   snapshot->velocities = {{3, 4, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}};
   snapshot->bead_ids = {10, 11, 12, 13};
@@ -64,6 +84,7 @@ inline std::shared_ptr<Frame> example_frame(const chip::Scene& scene) {
     frame->electrodes.push_back({electrode.channel, on, on ? 63.0 : 0.0, on ? 50.0 : 120.0});
   }
   frame->rail = {63, 1000, true};
+  frame->body_forces = {{0, 0, -2}, {3, 0, 0}};
   frame->channels = {{0, 1}, {}};
   frame->steps_per_second = 321;
   return frame;

@@ -9,11 +9,11 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from dmf_sim.msg import ChipState, DropletArray
+from dmf_sim.msg import ChipState, DropletArray, Event, Microparticle, MicroparticleArray
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from chip_client import Chip, Listener  # noqa: E402
@@ -43,6 +43,35 @@ class RunTest(unittest.TestCase):
             lambda m: m.header.stamp > stamp and abs(m.droplets[0].centroid.x - target.centroid.x) < 1.5e-5, 60)
         self.assertIn(target.channel, arrived.droplets[0].channels)
         self.assertEqual(len(arrived.droplets), 1)
+
+    def test_a_droplet_picks_up_a_microparticle(self):
+        events = Listener("/chip/events", Event)
+        listener = Listener("/chip/microparticles", MicroparticleArray)
+        frames = Listener("/tf", TFMessage)
+        layout = self.chip.get_layout().layout
+        # Just ahead of the droplet's foot, on the pad that calls it.
+        reply = self.chip.add_microparticle(x=-4e-5, radius=1e-5, static_friction=0.2, kinetic_friction=0.2,
+                                            rolling_friction=0.1)
+        self.assertTrue(reply.success, reply.message)
+        self.assertTrue(self.chip.set_hv(layout.reference_voltage, 1000, True).success)
+        self.assertTrue(self.chip.set_electrodes([1]).success)
+        taken = events.wait(lambda e: e.run == self.run_number and e.kind == Event.PICKED_UP, 60)
+        self.assertEqual(taken.microparticle, reply.microparticle)
+        self.assertEqual(len(taken.after), 1)
+        self.assertIn(f"microparticle {reply.microparticle}", taken.message)
+        wet = listener.wait(lambda m: m.header.stamp >= taken.header.stamp and m.microparticles
+                            and m.microparticles[0].droplet == taken.after[0]).microparticles[0]
+        self.assertGreater(wet.immersion, 0)
+        self.assertNotEqual(wet.place, Microparticle.DRY)
+        frames.wait(lambda m: "chip/microparticle_1" in [t.child_frame_id for t in m.transforms])
+        markers = Listener("/chip/markers", MarkerArray)
+        shown = markers.wait(lambda m: any(marker.ns == "microparticles" for marker in m.markers)).markers
+        self.assertEqual([marker.id for marker in shown if marker.ns == "microparticles"], [reply.microparticle])
+        self.assertTrue(self.chip.remove(0, reply.microparticle).success)
+        markers.wait(lambda m: any(marker.ns == "microparticles" and marker.action == Marker.DELETE
+                                   for marker in m.markers))
+        for heard in (events, listener, frames, markers):
+            heard.stop()
 
     def test_the_clock_is_never_zero_and_never_steps_back(self):
         self.clock.wait()

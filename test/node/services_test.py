@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Every service of the chip: what it does, and what it refuses without changing a bit of the state."""
+import json
 import math
 import os
 import subprocess
@@ -8,7 +9,8 @@ import unittest
 
 import rospy
 import rostest
-from dmf_sim.msg import Command, DropletArray, ElectrodeArray, Event
+from dmf_sim.msg import Command, DropletArray, ElectrodeArray, Event, Microparticle, MicroparticleArray
+from geometry_msgs.msg import Point, Vector3
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from chip_client import Chip, Listener  # noqa: E402
@@ -48,8 +50,28 @@ BAD_INPUT = [
     ("dispense_droplet", (9e-5, 0.0, 1e-18), ["20"]),
     ("dispense_droplet", (9e-5, NAN, 1e-13), ["nan"]),
     ("dispense_droplet", (9e-5, 0.0, INF), ["inf"]),
-    ("remove", (99,), ["99"]),
-    ("remove", (0,), ["0"]),
+    ("remove", (99, 0), ["droplet 99"]),
+    ("remove", (0, 0), ["droplet 0", "microparticle 0"]),
+    ("remove", (1, 1), ["droplet 1", "microparticle 1"]),
+    ("add_microparticle", {"x": NAN, "radius": 1e-5}, ["x", "nan"]),
+    ("add_microparticle", {"x": 3e-5}, ["radius", "0"]),
+    ("add_microparticle", {"x": 3e-5, "radius": INF}, ["radius", "inf"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "height": -1e-6}, ["height", "-1e-06"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "mass": -1.0}, ["mass", "-1"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "contact_angle_deg": 20.0}, ["contact angle: 20 degrees", "calibrated range"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "contact_angle_deg": 100.0, "attraction_mdpd": -15.0},
+     ["contact_angle_deg", "attraction_mdpd"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "beads": 612, "points": [Point()]}, ["612", "points"]),
+    ("add_microparticle", {"x": -9e-5, "radius": 1e-5}, ["to the liquid"]),
+    ("add_microparticle", {"x": 1.35e-4, "radius": 1e-5}, ["x 13.5", "-13 to 13"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-3}, ["radius", "0.5 to 20"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "beads": 613}, ["613", "612"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "static_friction": -1.0}, ["static_friction", "-1"]),
+    ("add_microparticle", {"x": 3e-5, "radius": 1e-5, "kinetic_friction": 0.5}, ["kinetic_friction", "0.5"]),
+    ("remove", (0, 7), ["microparticle 7"]),
+    ("set_body_forces", (Vector3(0, 0, 1e15), Vector3()), ["gravity"]),
+    ("set_body_forces", (Vector3(0, NAN, 0), Vector3()), ["gravity", "nan"]),
+    ("set_body_forces", (Vector3(), Vector3(0, 0, INF)), ["magnetic", "inf"]),
     ("step", (0,), ["0", "1000000"]),
     ("step", (1000001,), ["1000001", "1000000"]),
     ("save_checkpoint", ("../outside",), ["../outside", "bare"]),
@@ -80,8 +102,10 @@ class ServicesTest(unittest.TestCase):
         self.accepted(self.chip.step(5))
         before = self.chip.hash()
         for service, arguments, named in BAD_INPUT:
-            call = f"{service}{arguments}"
-            reply = getattr(self.chip, service)(*arguments)
+            call = f"{service} {arguments}"
+            named_arguments = isinstance(arguments, dict)
+            reply = getattr(self.chip, service)(*(() if named_arguments else arguments),
+                                                **(arguments if named_arguments else {}))
             self.assertFalse(reply.success, f"{call}: {reply.message}")
             for word in named:
                 self.assertIn(word, reply.message, call)
@@ -148,11 +172,88 @@ class ServicesTest(unittest.TestCase):
         self.assertAlmostEqual(new.volume, 8e-14, delta=2e-14)
         self.assertEqual(list(new.parents), [])
         self.events.wait(lambda e: e.run == self.run_number and e.kind == Event.APPEARED and new.id in e.after)
-        self.accepted(self.chip.remove(new.id))
+        self.accepted(self.chip.remove(new.id, 0))
         self.accepted(self.chip.step(50))
         left = droplets.wait(lambda m: m.step == 100 and len(m.droplets) == 1).droplets
         self.assertNotEqual(left[0].id, new.id)
         droplets.stop()
+
+    def add_ball(self, **more):
+        return self.accepted(self.chip.add_microparticle(
+            **{"x": 3e-5, "radius": 1e-5, "static_friction": 0.2, "kinetic_friction": 0.2, "rolling_friction": 0.1,
+               **more})).microparticle
+
+    def test_microparticles_come_and_go(self):
+        listener = Listener("/chip/microparticles", MicroparticleArray)
+        ball = self.add_ball()
+        self.assertEqual(ball, 1)
+        self.assertEqual(self.chip.get_state(False).state.microparticles, 1)
+        occupied = self.chip.add_microparticle(x=3.5e-5, radius=1e-5)
+        self.assertFalse(occupied.success)
+        self.assertIn("microparticle 1", occupied.message)
+        self.accepted(self.chip.step(50))
+        seen = listener.wait(lambda m: m.step == 50 and m.microparticles).microparticles
+        self.assertEqual([p.id for p in seen], [ball])
+        self.assertAlmostEqual(seen[0].pose.position.x, 3e-5, delta=1e-6)
+        self.assertAlmostEqual(seen[0].pose.position.z, 1e-5, delta=2e-7)
+        self.assertEqual(seen[0].beads, 612)
+        self.assertEqual(seen[0].droplet, 0)
+        self.assertEqual(seen[0].place, Microparticle.DRY)
+        self.assertGreater(seen[0].normal_force, 0, "the plate attracts it")
+        layout = self.chip.get_layout().layout
+        self.assertAlmostEqual(seen[0].mass, 612 * layout.mass_unit, delta=1e-15)
+        self.accepted(self.chip.remove(0, ball))
+        self.assertFalse(self.chip.remove(0, ball).success, "it is gone")
+        listener.wait(lambda m: m.step == 50 and not m.microparticles)
+        self.assertEqual(self.add_ball(), 2, "no id is given twice")
+        listener.stop()
+
+    def test_a_body_of_points_can_be_added(self):
+        points = [Point(x, y, z) for x in (-5e-6, 0, 5e-6) for y in (-5e-6, 0, 5e-6) for z in (-5e-6, 0, 5e-6)]
+        body = self.add_ball(points=points, mass=1e-10, height=1e-5)
+        self.accepted(self.chip.step(10))
+        self.accepted(self.chip.remove(0, body))
+
+    def test_gravity_and_the_magnet_go_on_and_off(self):
+        ball = self.add_ball(magnetic=True, height=3e-5)
+        listener = Listener("/chip/microparticles", MicroparticleArray)
+        too_strong = self.chip.set_body_forces(Vector3(), Vector3(1, 0, 0))
+        self.assertFalse(too_strong.success)
+        self.assertIn("magnetic", too_strong.message)
+        self.accepted(self.chip.set_body_forces(Vector3(0, 0, -9.81), Vector3(1e-7, 0, 0)))
+        state = self.chip.get_state(False).state
+        self.assertAlmostEqual(state.gravity.z, -9.81, delta=1e-9)
+        self.assertAlmostEqual(state.magnetic.x, 1e-7, delta=1e-16)
+        self.accepted(self.chip.step(100))
+        pushed = listener.wait(lambda m: m.step == 100).microparticles[0]
+        layout = self.chip.get_layout().layout
+        expected = 1e-7 / pushed.mass * 100 * layout.time_step_mdpd * layout.time_unit
+        self.assertAlmostEqual(pushed.twist.linear.x / expected, 1, delta=0.02)
+        self.accepted(self.chip.set_body_forces(Vector3(), Vector3()))
+        self.assertEqual(self.chip.get_state(False).state.magnetic.x, 0)
+        self.accepted(self.chip.step(100))
+        free = listener.wait(lambda m: m.step == 200).microparticles[0]
+        self.assertAlmostEqual(free.twist.linear.x, pushed.twist.linear.x, delta=0.01 * expected)
+        self.assertEqual(free.id, ball)
+        listener.stop()
+
+    def test_commands_of_microparticles_re_simulate_the_run(self):
+        self.add_ball(contact_angle_deg=109.0)
+        self.accepted(self.chip.step(30))
+        self.accepted(self.chip.set_body_forces(Vector3(0, 0, -1e4), Vector3()))
+        self.accepted(self.chip.step(30))
+        end = self.chip.hash()
+        told = [self.commands.wait(lambda c, name=name: c.run == self.run_number and c.name == name)
+                for name in ("add_microparticle", "set_body_forces")]
+        self.assertEqual([c.step for c in told], [0, 30])
+        said = json.loads(told[0].json)
+        self.assertTrue(self.chip.reset().success)
+        self.add_ball(contact_angle_deg=said["contact_angle"], x=said["x"])
+        self.accepted(self.chip.step(30))
+        gravity = json.loads(told[1].json)["gravity"]
+        self.accepted(self.chip.set_body_forces(Vector3(*gravity), Vector3()))
+        self.accepted(self.chip.step(30))
+        self.assertEqual(self.chip.hash(), end)
 
     def test_commands_are_on_record_with_their_step(self):
         self.accepted(self.chip.step(7))

@@ -62,6 +62,88 @@ TEST_F(ConvertTest, DropletIsInSiUnits) {
   EXPECT_EQ(droplet.channels, (std::vector<std::uint32_t>{0, 1}));
 }
 
+TEST_F(ConvertTest, MicroparticleIsInSiUnits) {
+  const double newton = 3e-13 * 5 * 5 / 2e-5;  // of k_BT / r_c
+  const auto message = to_microparticles(*frame_, context_);
+  EXPECT_EQ(message.step, 1200u);
+  ASSERT_EQ(message.microparticles.size(), 1u);
+  const auto& body = message.microparticles[0];
+  EXPECT_EQ(body.id, 3u);
+  EXPECT_DOUBLE_EQ(body.radius, 1.5 * 2e-5);
+  EXPECT_DOUBLE_EQ(body.mass, 600 * 3e-13);
+  EXPECT_TRUE(body.magnetic);
+  EXPECT_DOUBLE_EQ(body.attraction_mdpd, -15);
+  EXPECT_DOUBLE_EQ(body.pose.position.z, 1.5 * 2e-5);
+  EXPECT_DOUBLE_EQ(body.pose.orientation.y, std::sin(0.5));
+  EXPECT_DOUBLE_EQ(body.twist.linear.x, 0.5 * 5);
+  EXPECT_DOUBLE_EQ(body.twist.angular.y, 0.25 / 4e-6);
+  EXPECT_DOUBLE_EQ(body.position_mdpd.y, 2);
+  EXPECT_DOUBLE_EQ(body.velocity_mdpd.x, 0.5);
+  EXPECT_DOUBLE_EQ(body.angular_velocity_mdpd.y, 0.25);
+  EXPECT_TRUE(body.contact);
+  EXPECT_DOUBLE_EQ(body.contact_fraction, 0.75);
+  EXPECT_DOUBLE_EQ(body.contact_normal.z, 1);
+  EXPECT_DOUBLE_EQ(body.normal_force, 20 * newton);
+  EXPECT_DOUBLE_EQ(body.friction_force.x, -2 * newton);
+  EXPECT_DOUBLE_EQ(body.drive_force.z, -20 * newton);
+  EXPECT_DOUBLE_EQ(body.immersion, 0.9);
+  EXPECT_EQ(body.droplet, 5u);
+  EXPECT_EQ(body.place, dmf_sim::Microparticle::REAR);
+}
+
+TEST_F(ConvertTest, AMicroparticleInTheAirHasNoContactNormal) {
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->microparticles[0].contact_fraction = 0.3;
+  frame_->snapshot = snapshot;
+  const auto body = to_microparticles(*frame_, context_).microparticles.at(0);
+  EXPECT_FALSE(body.contact);
+  EXPECT_EQ(body.contact_normal.z, 0);
+}
+
+TEST_F(ConvertTest, StateTellsTheBodyForces) {
+  const auto state = to_state(*frame_, context_);
+  EXPECT_EQ(state.microparticles, 1u);
+  EXPECT_DOUBLE_EQ(state.gravity.z, -2 * 5 / 4e-6);
+  EXPECT_DOUBLE_EQ(state.magnetic.x, 3 * 3e-13 * 5 * 5 / 2e-5);
+}
+
+TEST_F(ConvertTest, ARequestedMicroparticleKeepsDefaultsWhereItSaysNothing) {
+  dmf_sim::AddMicroparticle::Request request;
+  request.x = 1e-5;
+  request.radius = 2e-5;
+  const chip::AddMicroparticle plain = to_command(request);
+  EXPECT_EQ(plain.x, 1e-5);
+  EXPECT_EQ(plain.radius, 2e-5);
+  EXPECT_FALSE(plain.mass || plain.contact_angle_deg);
+  EXPECT_EQ(plain.attraction, -15);
+  EXPECT_EQ(plain.static_friction, 0) << "as it stands: frictionless";
+  EXPECT_EQ(plain.kinetic_friction, 0.0);
+  request.contact_angle_deg = 109;
+  request.mass = 1e-12;
+  request.points.resize(2);
+  request.points[1].z = 3e-5;
+  request.static_friction = 0.8;
+  request.magnetic = true;
+  const chip::AddMicroparticle full = to_command(request);
+  EXPECT_EQ(full.contact_angle_deg, 109);
+  EXPECT_EQ(full.mass, 1e-12);
+  ASSERT_EQ(full.points.size(), 2u);
+  EXPECT_EQ(full.points[1].z(), 3e-5);
+  EXPECT_EQ(full.static_friction, 0.8);
+  EXPECT_TRUE(full.magnetic);
+}
+
+TEST_F(ConvertTest, EventsNameTheirMicroparticle) {
+  EventNote note;
+  note.kind = "picked_up";
+  note.after = {5};
+  note.microparticle = 3;
+  const auto event = to_event(note, context_);
+  EXPECT_EQ(event.kind, dmf_sim::Event::PICKED_UP);
+  EXPECT_EQ(event.after, (std::vector<std::uint32_t>{5}));
+  EXPECT_EQ(event.microparticle, 3u);
+}
+
 TEST_F(ConvertTest, AnglesThatWereNotMeasuredAreNan) {
   const auto droplets = to_droplets(*frame_, context_).droplets;
   EXPECT_DOUBLE_EQ(droplets[0].advancing_angle_deg, 100);
@@ -138,6 +220,11 @@ TEST_F(ConvertTest, TransformsAreScaledForTheScreen) {
   EXPECT_EQ(droplets[0].child_frame_id, "chip/droplet_5");
   EXPECT_DOUBLE_EQ(droplets[0].transform.translation.y, 2 * 2e-5 * 1000);
   EXPECT_DOUBLE_EQ(droplets[0].transform.rotation.w, 1);
+  const auto bodies = microparticle_transforms(*frame_, context_);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_EQ(bodies[0].child_frame_id, "chip/microparticle_3");
+  EXPECT_DOUBLE_EQ(bodies[0].transform.translation.z, 1.5 * 2e-5 * 1000);
+  EXPECT_DOUBLE_EQ(bodies[0].transform.rotation.y, std::sin(0.5)) << "turned as the body is";
   const auto electrodes = electrode_transforms(context_, ros::Time(1));
   ASSERT_EQ(electrodes.size(), 4u);
   EXPECT_EQ(electrodes[3].child_frame_id, "chip/electrode_3");

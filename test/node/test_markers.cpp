@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -19,7 +21,8 @@ std::map<std::pair<std::string, int>, Marker> by_id(const visualization_msgs::Ma
     EXPECT_TRUE(result.emplace(std::make_pair(marker.ns, marker.id), marker).second)
         << marker.ns << " " << marker.id << " twice";
     EXPECT_EQ(marker.header.frame_id, "chip");
-    EXPECT_EQ(marker.pose.orientation.w, 1);
+    const auto& q = marker.pose.orientation;
+    EXPECT_NEAR(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1, 1e-12) << "RViz refuses others";
   }
   return result;
 }
@@ -93,11 +96,57 @@ TEST_F(MarkersTest, BeadsOfADropletOfThePastAreVapour) {
   EXPECT_EQ(by_id(droplet_markers(*frame_, context_)).at({"vapour", 0}).points.size(), 2u);
 }
 
-TEST_F(MarkersTest, DropletsThatAreGoneAreDeletedWithTheirLabels) {
-  const auto markers = by_id(deletions({4, 9}, ros::Time(3)));
-  ASSERT_EQ(markers.size(), 4u);
+TEST_F(MarkersTest, AMicroparticleIsAStripedBallThatTurnsWithIt) {
+  const auto markers = by_id(microparticle_markers(*frame_, context_));
+  ASSERT_EQ(markers.size(), 1u);
+  const Marker& ball = markers.at({"microparticles", 3});
+  EXPECT_EQ(ball.type, Marker::TRIANGLE_LIST);
+  EXPECT_NEAR(ball.pose.position.x, 1 * 0.02, 1e-12);
+  EXPECT_NEAR(ball.pose.orientation.y, std::sin(0.5), 1e-12);
+  ASSERT_EQ(ball.points.size() % 3, 0u);
+  ASSERT_EQ(ball.colors.size(), ball.points.size()) << "a colour for every corner";
+  double volume = 0;
+  std::set<float> reds;
+  for (std::size_t i = 0; i < ball.points.size(); i += 3) {
+    const auto corner = [&](std::size_t k) {
+      const auto& p = ball.points[i + k];
+      return Eigen::Vector3d(p.x, p.y, p.z);
+    };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    EXPECT_GT(normal.dot(corner(0) + corner(1) + corner(2)), 0) << "seen from outside, counter-clockwise";
+    volume += corner(0).dot(corner(1).cross(corner(2))) / 6;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(corner(k).norm(), 1.5 * 0.02, 1e-9);
+    reds.insert(ball.colors[i].r);
+  }
+  const double sphere = 4.0 / 3 * 3.14159265 * std::pow(1.5 * 0.02, 3);
+  EXPECT_NEAR(volume / sphere, 1, 0.05) << "closed";
+  EXPECT_EQ(reds.size(), 2u) << "two colours";
+}
+
+TEST_F(MarkersTest, MagneticAndWettingMicroparticlesHaveColoursOfTheirOwn) {
+  const auto colors = [this](bool magnetic, double attraction) {
+    auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+    snapshot->microparticles[0].magnetic = magnetic;
+    snapshot->microparticles[0].attraction = attraction;
+    frame_->snapshot = snapshot;
+    return microparticle_markers(*frame_, context_).markers.at(0).colors;
+  };
+  EXPECT_NE(colors(true, -15), colors(false, -15));
+  EXPECT_NE(colors(true, -15), colors(true, -30));
+}
+
+TEST_F(MarkersTest, ADropletThatCarriesIsSeeThrough) {
+  const auto markers = by_id(droplet_markers(*frame_, context_));
+  EXPECT_LT(markers.at({"droplets", 5}).color.a, 0.5);
+  EXPECT_GT(markers.at({"droplets", 7}).color.a, 0.5);
+}
+
+TEST_F(MarkersTest, WhatIsGoneIsDeletedDropletsWithTheirLabels) {
+  const auto markers = by_id(deletions({4, 9}, {9}, ros::Time(3)));
+  ASSERT_EQ(markers.size(), 5u);
   for (const auto& [key, marker] : markers) EXPECT_EQ(marker.action, Marker::DELETE);
   EXPECT_EQ(markers.count({"droplet_labels", 9}), 1u);
+  EXPECT_EQ(markers.count({"microparticles", 9}), 1u);
 }
 
 TEST(Triangulate, CoversAPolygonWithNotches) {

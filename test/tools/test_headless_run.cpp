@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,23 @@ TEST(HeadlessRun, ResumePassesOverADamagedCheckpoint) {
   EXPECT_EQ(headless_run(second).hash, headless_run(tiny(200)).hash);
   std::filesystem::resize_file(folder + "/step_000000000050.checkpoint", 1000);
   EXPECT_THROW(headless_run(second), engine::InvalidInput);
+}
+
+TEST(HeadlessRun, LogsMicroparticlesWhereThereAreAny) {
+  RunOptions with = tiny(100), without = tiny(100);
+  with.scene = "delivery_line";
+  with.output = fresh_folder("with");
+  without.output = fresh_folder("without");
+  headless_run(with);
+  headless_run(without);
+  EXPECT_FALSE(std::filesystem::exists(without.output + "/microparticles.csv"));
+  std::ifstream log(with.output + "/microparticles.csv");
+  std::string head, first, second, more;
+  ASSERT_TRUE(std::getline(log, head) && std::getline(log, first) && std::getline(log, second));
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(first.begin(), first.end(), ','));
+  EXPECT_EQ(first.rfind("50,0.5,", 0), 0u) << first;
+  EXPECT_EQ(second.substr(second.rfind(',')), ",dry");
+  EXPECT_FALSE(std::getline(log, more)) << "one line a look";
 }
 
 TEST(HeadlessRun, JsonHasTheKeysThatScriptsRelyOn) {
