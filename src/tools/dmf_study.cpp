@@ -4,20 +4,33 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
 
 #include "tools/study.h"
 
 int main(int argc, char** argv) {
   using namespace dmf::tools;
-  const std::map<std::string, void (*)(const StudyOptions&)> studies{
+  std::map<std::string, std::function<void(const StudyOptions&)>> studies{
       {"contact_angle", study_contact_angle},
       {"commanded_angle", study_commanded_angle},
       {"liquid", study_liquid},
       {"crossing", study_crossing},
-      {"time_step", study_time_step}};
+      {"time_step", study_time_step},
+      {"microparticle_angle", study_microparticle_angle},
+      {"forces", study_forces},
+      {"inner_flow", study_inner_flow}};
+  std::string transport_titles;
+  for (const StudyTitle& study : transport_studies()) {
+    studies[study.name] = [name = study.name](const StudyOptions& options) {
+      study_transport(name, options);
+    };
+    transport_titles += fmt::format("  {:<16} {}\n", study.name, study.about);
+  }
   const std::map<std::string, dmf::engine::Integrator> integrators{
       {"groot_warren", dmf::engine::Integrator::groot_warren}, {"baoab", dmf::engine::Integrator::baoab}};
+  const std::map<std::string, dmf::engine::ContactModel> contacts{
+      {"lan2016", dmf::engine::ContactModel::lan2016}, {"coulomb", dmf::engine::ContactModel::coulomb}};
   CLI::App app(
       "Studies of dmf_sim.\n"
       "  contact_angle    wall attraction -> contact angle; writes calibration.yaml\n"
@@ -25,7 +38,13 @@ int main(int argc, char** argv) {
       "  liquid           temperature, density, surface tension, viscosity\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
-      "A study that was stopped goes on where it was: finished runs stand in its CSV files.");
+      "Microparticles:\n"
+      "  microparticle_angle  attraction -> contact angle, floating in a film; writes microparticle.yaml\n" +
+      transport_titles +
+      "  forces           drive, friction and velocity at places of the gradient\n"
+      "  inner_flow       flow of the liquid around a microparticle\n"
+      "A study that was stopped goes on where it was: finished runs stand in its CSV files, and runs of\n"
+      "microparticles save themselves every minute.");
   std::string name;
   StudyOptions options;
   app.add_option("name", name, "study")->required()->check(CLI::IsMember(studies));
@@ -46,6 +65,11 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
   app.add_option("--calibration", options.calibration, "name, file, or lan2016")->capture_default_str();
+  app.add_option("--contact", options.contact, "of microparticles with the wall: lan2016 or coulomb")
+      ->transform(CLI::CheckedTransformer(contacts));
+  app.add_option("--only", options.only, "some of what a study of microparticles varies, such as -15,-19")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--scene", options.scene, "for crossing")->capture_default_str();
   app.add_option("--out", options.output, "folder for CSV files")->capture_default_str();
   app.add_flag("--quick", options.quick, "short runs that show that it works");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -11,6 +12,9 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
+
+#include "chip/configuration.h"
+#include "engine/simulation.h"
 
 namespace dmf::tools {
 
@@ -28,6 +32,54 @@ MeanAndSpread mean_and_spread(const std::vector<double>& values) {
 
 std::string integrator_key(engine::Integrator integrator) {
   return integrator == engine::Integrator::baoab ? " baoab" : "";
+}
+
+chip::Scene scene_for(const StudyOptions& options, const std::string& name) {
+  chip::Scene scene = chip::load_scene(name);
+  scene.parameters.time_step = options.time_step;
+  scene.parameters.integrator = options.integrator;
+  scene.parameters.list_skin = options.list_skin;
+  if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
+  scene.parameters.microparticles.contact = options.contact;
+  scene.calibration_file =
+      options.calibration == "lan2016" ? "" : chip::find_config("calibration", options.calibration);
+  return scene;
+}
+
+std::string options_key(const StudyOptions& options) {
+  const StudyOptions usual;
+  std::string key;
+  if (options.time_step != usual.time_step) key += fmt::format(" dt={}", options.time_step);
+  key += integrator_key(options.integrator);
+  if (options.lambda > 0) key += fmt::format(" lambda={}", options.lambda);
+  if (options.calibration != usual.calibration) {
+    const std::string name = std::filesystem::path(options.calibration).stem().string();
+    key += fmt::format(" calibration={}", name);
+  }
+  if (options.contact == engine::ContactModel::coulomb) key += " coulomb";
+  if (options.quick) key += " quick";
+  return key;
+}
+
+void shorten_the_approach(chip::Scene& scene) {
+  scene.settle_time = 5;
+  if (scene.microparticles.empty()) return;
+  engine::DropletPlacement& droplet = scene.droplets.at(0);
+  double first = scene.parameters.domain.upper.x();
+  for (const auto& body : scene.microparticles) first = std::min(first, body.center.x() - body.radius);
+  // 1 r_c apart is as near as the engine lets them be placed.
+  droplet.center.x() = first - droplet.radius - 1;
+}
+
+bool is_wanted(const StudyOptions& options, const std::string& label) {
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), label) != options.only.end();
+}
+
+void require_known(const StudyOptions& options, const std::vector<std::string>& labels) {
+  for (const std::string& label : options.only)
+    if (std::find(labels.begin(), labels.end(), label) == labels.end())
+      throw std::runtime_error(fmt::format("--only: {}, allowed: {}", label, fmt::join(labels, ", ")));
 }
 
 ResultTable::ResultTable(const std::string& file, std::vector<std::string> columns) : file_(file) {
@@ -104,6 +156,16 @@ void run_jobs(const std::string& title, const std::vector<Job>& jobs, const Stud
   for (int k = 0; k < options.jobs; ++k) threads.emplace_back(worker);
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<double> row_or_nan(const std::string& key, std::size_t columns,
+                               const std::function<std::vector<double>()>& work) {
+  try {
+    return work();
+  } catch (const engine::Instability& problem) {
+    fmt::print(stderr, "{}: {}\n", key, problem.what());
+    return std::vector<double>(columns, NAN);
+  }
 }
 
 }  // namespace dmf::tools

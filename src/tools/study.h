@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "chip/scene.h"
 #include "engine/parameters.h"
 
 namespace dmf::tools {
@@ -22,7 +23,9 @@ struct StudyOptions {
   double list_skin = 0.25;                 ///< r_c
   std::string calibration = "water_like";  ///< name in config/calibration, a file, or "lan2016"
   std::string scene = "gradient_R5";       ///< crossing: which
-  std::string output = ".";                ///< folder for CSV files and results
+  engine::ContactModel contact = engine::ContactModel::lan2016;  ///< studies of microparticles
+  std::vector<std::string> only;                                 ///< of what is varied; empty: all
+  std::string output = ".";                                      ///< folder for CSV files and results
 };
 
 /// One number with its spread over seeds.
@@ -35,6 +38,21 @@ MeanAndSpread mean_and_spread(const std::vector<double>& values);
 
 /// What a run's key says of its integrator: " baoab", or nothing for the default.
 std::string integrator_key(engine::Integrator integrator);
+
+/// A scene of config/scenes with what the command line says of time step, integrator, calibration and
+/// contact.
+chip::Scene scene_for(const StudyOptions& options, const std::string& name);
+/// What a run's key says of all that, where it is not the default: " dt=0.005 coulomb quick".
+std::string options_key(const StudyOptions& options);
+
+/// The droplet starts beside the first microparticle in its way, after a short rest: it is picked up soon and
+/// for sure.
+void shorten_the_approach(chip::Scene& scene);
+
+/// Is this value among those asked for by --only?
+bool is_wanted(const StudyOptions& options, const std::string& label);
+/// @throws std::runtime_error when --only names a value that the study does not vary.
+void require_known(const StudyOptions& options, const std::vector<std::string>& labels);
 
 /// Results of runs, one a line in a CSV file, written as soon as they are there: a study that was killed goes
 /// on where it was. A run is known by its key, such as "A=-15 R=10 seed=2". Thread-safe.
@@ -64,6 +82,10 @@ struct Job {
 void run_jobs(const std::string& title, const std::vector<Job>& jobs, const StudyOptions& options,
               ResultTable& table);
 
+/// What the work gives; all NaN, with a word on standard error, when the run has become unstable.
+std::vector<double> row_or_nan(const std::string& key, std::size_t columns,
+                               const std::function<std::vector<double>()>& work);
+
 /// The studies. Each prints a table with the paper's numbers beside ours and leaves CSV files in
 /// options.output.
 void study_contact_angle(const StudyOptions& options);  ///< A_lw -> angle: makes the calibration file
@@ -74,5 +96,22 @@ void study_crossing(
     const StudyOptions& options);  ///< a droplet on a wettability gradient: time against Lan's
 void study_time_step(
     const StudyOptions& options);  ///< what each integrator does to every observable as the step grows
+
+/// A_ls -> contact angle of a floating microparticle: makes its calibration file.
+void study_microparticle_angle(const StudyOptions& options);
+
+/// Studies of microparticles on their way: a scene, what is varied in it, what is measured. All in one table
+/// in studies/transport.cpp; study_transport() does the one of that name. They leave NAME_runs.csv (a line a
+/// run), NAME.csv (means) and a record of every run in runs/.
+struct StudyTitle {
+  std::string name, about;
+};
+std::vector<StudyTitle> transport_studies();
+void study_transport(const std::string& name, const StudyOptions& options);
+
+/// Forces on a microparticle and its velocity at places of the gradient that it is held at.
+void study_forces(const StudyOptions& options);
+/// Flow of the liquid around a microparticle, and in a droplet without one.
+void study_inner_flow(const StudyOptions& options);
 
 }  // namespace dmf::tools

@@ -1,0 +1,54 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "tools/transport.h"
+
+namespace dmf::tools {
+
+/// What the records of one microparticle say of its way. Reduced units; NaN for what has not happened.
+class Trajectory {
+ public:
+  /// @param microparticle  its id; 0: the droplet of a scene without, whose centroid then counts as x.
+  Trajectory(const std::vector<TransportRecord>& records, int microparticle);
+
+  /// When it first passes x on its way to +x, linear between records, tau.
+  double time_at(double x) const;
+  double time_picked_up() const;
+  double time_dropped_off() const;  ///< by the droplet that did not take it up again
+  double x_dropped_off() const;
+  /// Velocity at the drop-off by Lan's way (4.2.1): the slope of a parabola fitted to the trajectory before
+  /// it. Fitted over the last `fitted_way` that ends `spared_way` before the place of drop-off, where the
+  /// droplet is already letting go.
+  double critical_velocity() const;
+  static constexpr double fitted_way = 8.0, spared_way = 0.5;  ///< r_c
+  /// When it is fastest: the largest slope of parabolas fitted over `fastest_window`. That is where the
+  /// trajectory turns from concave to convex.
+  double time_fastest() const;
+  static constexpr double fastest_window = 600.0;  ///< tau
+  /// When its centre first stands `lift` r_c higher than it does on the wall.
+  double time_lifted(double lift = 0.5) const;
+  // Means from the pickup on, every step counted.
+  double mean_height() const;  ///< of the centre over the wall plane
+  double contact_fraction() const;
+  // Means over the last tenth of the run.
+  double final_x() const;
+  double final_droplet_x() const;
+  double final_height() const;
+  // Of the last record before that time.
+  double x_at(double time) const;
+  double droplet_x_at(double time) const;
+  bool carried_at_end() const;  ///< by the largest droplet
+
+ private:
+  std::optional<std::size_t> drop_off() const;
+  double mean(double from_time, double TransportRecord::*value) const;
+  double last_before(double time, double TransportRecord::*value) const;
+
+  std::vector<TransportRecord> records_;
+};
+
+/// x(t) = a + b t + c t^2 by least squares. @returns its slope at `time`; NaN for fewer than 4 points.
+double slope_of_parabola(const std::vector<double>& times, const std::vector<double>& values, double time);
+
+}  // namespace dmf::tools
