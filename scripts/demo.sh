@@ -1,19 +1,23 @@
 #!/bin/bash
 # From nothing to a recorded run: installs what is missing, builds, starts a master and the chip on loopback, lets a
-# controller drive a droplet over the electrodes by service calls, records everything, and ends with a summary and a
-# picture.
-# usage: scripts/demo.sh [--rviz] [--out DIR] [--port PORT] [--scene SCENE]
+# controller carry a microparticle with a droplet to a target electrode and leave it there, by service calls alone,
+# records everything, and ends with a summary and a picture.
+# usage: scripts/demo.sh [--rviz] [--out DIR] [--port PORT] [--scene SCENE] [--target CHANNEL] [--seed SEED]
 #   --rviz    look at it while it runs
 #   --out     where bag, picture and logs go; default out/demo in this checkout
 #   --port    of the ROS master; default: any that is free
-#   --scene   default electrode_line
+#   --scene   default delivery_line; one without a microparticle (electrode_line) has its droplet driven alone
+#   --target  where the particle is to be left; default: three electrodes after it, channel 5 of delivery_line
+#   --seed    in place of the scene's
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 out="$root/out/demo"
 port=""
 rviz=false
-scene=electrode_line
+scene=delivery_line
+target=""
+seed=""
 value() { [ $# -ge 2 ] || die "$1 needs a value"; echo "$2"; }
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -21,12 +25,16 @@ while [ $# -gt 0 ]; do
     --out) out=$(value "$@"); shift ;;
     --port) port=$(value "$@"); shift ;;
     --scene) scene=$(value "$@"); shift ;;
-    *) die "unknown option $1, allowed: --rviz, --out DIR, --port PORT, --scene SCENE" ;;
+    --target) target=$(value "$@"); shift ;;
+    --seed) seed=$(value "$@"); shift ;;
+    *) die "unknown option $1, allowed: --rviz, --out DIR, --port PORT, --scene SCENE, --target CHANNEL, --seed SEED" ;;
   esac
   shift
 done
 [[ "$port" =~ ^[0-9]*$ ]] && [ "${port:-1}" -ge 1 ] && [ "${port:-1}" -le 65535 ] ||
   die "--port: $port, allowed: 1 to 65535"
+[ "$scene" != delivery_line ] || target="${target:-5}"
+[[ "$target" =~ ^[0-9]*$ ]] || die "--target: $target, allowed: a channel of the scene"
 
 # Prints the port if it can be had; without an argument any that is free.
 free_port() {
@@ -96,7 +104,7 @@ rosparam get /rosdistro >/dev/null 2>&1 || fail "the ROS master does not answer"
 bag="$out/demo.bag"
 rm -f "$bag" "$bag.active" "$out/demo.png"
 # Few frames of beads unless somebody looks: they are most of the bag.
-roslaunch dmf_sim chip.launch scene:="$scene" rviz:=$rviz record:=true bag:="$bag" \
+roslaunch dmf_sim chip.launch scene:="$scene" seed:="$seed" rviz:=$rviz record:=true bag:="$bag" \
   display_rate:=$($rviz && echo 10 || echo 2) >"$out/log/chip.txt" 2>&1 &
 chip=$!
 started+=("$chip")
@@ -108,7 +116,7 @@ for ((i = 0; i < 150; i++)); do
   sleep 0.2
 done
 
-rosrun dmf_sim demo_controller.py __name:=demo_controller &
+rosrun dmf_sim demo_controller.py __name:=demo_controller _target:="${target:--1}" &
 controller=$!
 started+=("$controller")
 status=0
@@ -121,4 +129,5 @@ fi
 
 stop "$chip"  # closes the bag
 [ -f "$bag" ] || fail "nothing was recorded" "$out/log/chip.txt"
-rosrun dmf_sim summarize_run.py "$bag" --picture "$out/demo.png" || die "the bag $bag could not be summarized"
+rosrun dmf_sim summarize_run.py "$bag" --picture "$out/demo.png" ${target:+--target "$target"} ||
+  die "the bag $bag could not be summarized"

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Says what a recorded run did, and draws it.
 
-usage: summarize_run.py BAG [--chip /chip] [--droplet ID] [--picture FILE.png | --no-picture]
+usage: summarize_run.py BAG [--chip /chip] [--droplet ID] [--target CHANNEL] [--picture FILE.png | --no-picture]
 
 Works on any bag that holds the chip's ~layout, ~droplets, ~electrodes and ~state; with ~particles the picture also
-shows the chip with its beads. Needs no ROS master. Exits with 1 and one line when the bag can't be used.
+shows the chip with its beads, with ~microparticles the paths of these. Needs no ROS master. Exits with 1 and one line
+when the bag can't be used.
 """
 import argparse
 import bisect
@@ -31,8 +32,9 @@ class Run:
         self.layout = None
         self.states, self.droplets, self.electrodes, self.commands, self.events = [], [], [], [], []
         self._bag, self._particles_topic = bag, chip + "/particles"
+        self.microparticles = []
         lists = {"state": self.states, "droplets": self.droplets, "electrodes": self.electrodes,
-                 "commands": self.commands, "events": self.events}
+                 "commands": self.commands, "events": self.events, "microparticles": self.microparticles}
         topics = [f"{chip}/{name}" for name in (*lists, "layout")]
         for topic, message, _ in bag.read_messages(topics):
             name = topic.rsplit("/", 1)[1]
@@ -47,7 +49,7 @@ class Run:
         # Only the last run: a reset starts the chip's time over.
         last = self.states[-1].run
         begin = next(state.header.stamp for state in self.states if state.run == last)
-        for found in (self.states, self.droplets, self.events):
+        for found in (self.states, self.droplets, self.events, self.microparticles):
             found[:] = [message for message in found if message.header.stamp >= begin]
         # ~electrodes speaks up only when something changes: what was said last before counts too.
         earlier = [message for message in self.electrodes if message.header.stamp < begin]
@@ -117,6 +119,46 @@ class Track:
         return list(dict.fromkeys(channel for d in self.observations for channel in d.channels))
 
 
+class ParticleTrack:
+    """One microparticle's life as arrays over time."""
+
+    def __init__(self, run, particle):
+        seen = [(message.time, p) for message in run.microparticles for p in message.microparticles if p.id == particle]
+        self.id = particle
+        self.radius = seen[0][1].radius
+        self.time = np.array([time for time, _ in seen])
+        self.position = np.array([[p.pose.position.x, p.pose.position.y, p.pose.position.z] for _, p in seen])
+        self.events = [event for event in run.events if event.microparticle == particle]
+
+    def at(self, time):
+        """Where it was nearest to a chip time, None when it was not there then."""
+        if not self.time[0] <= time <= self.time[-1]:
+            return None
+        return self.position[np.argmin(abs(self.time - time))]
+
+    def told(self, run, target):
+        """A sentence for people."""
+        lies = self.position[-1]
+        text = f"x {self.position[0, 0] * 1e3:+.3f} to {lies[0] * 1e3:+.3f} mm"
+        words = {"picked_up": "taken up by", "dropped_off": "left by"}
+        for event in self.events:
+            if event.kind in words:
+                droplet = (event.after or event.before or [0])[0]
+                text += f", {words[event.kind]} droplet {droplet} at {event.time * 1e3:.3f} ms"
+        electrodes = [e for e in run.layout.electrodes if target is None or e.channel == target]
+        if not electrodes:
+            return text
+        nearest = min(electrodes, key=lambda e: math.hypot(e.centroid.x - lies[0], e.centroid.y - lies[1]))
+        off = math.hypot(nearest.centroid.x - lies[0], nearest.centroid.y - lies[1])
+        name = f"channel {nearest.channel}" if target is None else f"target channel {nearest.channel}"
+        return f"{text}; lies {off * 1e3:.3f} mm from the centre of {name}"
+
+
+def particle_tracks(run):
+    ids = sorted({p.id for message in run.microparticles for p in message.microparticles})
+    return [ParticleTrack(run, particle) for particle in ids]
+
+
 def driven_span(run, track):
     """First and last index of the track while some pad has a voltage; the whole track when none ever had."""
     changes = [(run.chip_time(m.header.stamp), any(e.voltage > 0 for e in m.electrodes)) for m in run.electrodes]
@@ -138,7 +180,7 @@ def median_text(values):
     return f"{middle:.1f} deg (middle half {low:.1f} to {high:.1f})"
 
 
-def summarize(run, track, path):
+def summarize(run, track, particles, target, path):
     if len(track.time) < 2:
         raise Unusable("the droplet was seen only once")
     layout = run.layout
@@ -164,6 +206,7 @@ def summarize(run, track, path):
                    f"{run.states[-1].kernel}" if rates else "never ran"),
         ("bag", f"{os.path.abspath(path)}, {os.path.getsize(path) / 1e6:.1f} MB"),
     ]
+    lines[3:3] = [(f"microparticle {particle.id}", particle.told(run, target)) for particle in particles]
     faults = [event.message for event in run.events if event.kind == "fault"]
     if faults:
         lines.append(("fault", faults[-1]))
@@ -171,7 +214,7 @@ def summarize(run, track, path):
         print(f"{name + ':':17} {text}")
 
 
-def draw_trajectory(axes, run, track):
+def draw_trajectory(axes, run, track, particles):
     """x over time, over the electrodes as bands: orange while they have a voltage."""
     from matplotlib.patches import Rectangle
     end = track.time[-1] * 1e3
@@ -190,9 +233,20 @@ def draw_trajectory(axes, run, track):
             if strength > 0:
                 axes.add_patch(Rectangle((begin, low), until - begin, high - low, color=voltage_color(strength),
                                          alpha=0.6, zorder=1))
-    axes.plot(track.time * 1e3, track.x * 1e3, color="C0", zorder=2)
+    axes.plot(track.time * 1e3, track.x * 1e3, color="C0", zorder=2, label=f"droplet {track.id}")
+    for particle in particles:
+        axes.plot(particle.time * 1e3, particle.position[:, 0] * 1e3, color="C3", zorder=3,
+                  label=f"microparticle {particle.id}")
+        for event in particle.events:
+            place = particle.at(event.time)
+            if place is not None:
+                axes.plot(event.time * 1e3, place[0] * 1e3, "^" if event.kind == "picked_up" else "v", color="C3",
+                          zorder=4)
+    if particles:
+        axes.legend(fontsize="small", loc="lower right")
     xs = [corner.x * 1e3 for electrode in row for corner in electrode.outline]
-    axes.set(xlabel="chip time (ms)", ylabel="x (mm)", title=f"droplet {track.id} over the electrodes",
+    marks = ", microparticles taken up (▲) and left (▼)" if particles else ""
+    axes.set(xlabel="chip time (ms)", ylabel="x (mm)", title=f"droplet {track.id} over the electrodes{marks}",
              xlim=(track.time[0] * 1e3, end), ylim=(min(xs), max(xs)))
 
 
@@ -211,9 +265,9 @@ def voltage_color(fraction):
     return (0.75 + 0.25 * f, 0.75 - 0.20 * f, 0.75 - 0.70 * f)
 
 
-def draw_chip(axes, run, frame, side):
+def draw_chip(axes, run, particles, frame, side):
     """The chip from above, or from the side, with the beads of one frame."""
-    from matplotlib.patches import Polygon
+    from matplotlib.patches import Circle, Polygon
     layout, (time, droplets, positions) = run.layout, frame
     states = run.electrodes_at(time)
     plate = layout.lower.z * 1e3
@@ -236,11 +290,16 @@ def draw_chip(axes, run, frame, side):
     base = np.array([[0.25, 0.55, 0.95] if d else [0.6, 0.6, 0.6] for d in droplets[order]])
     height = positions[order, 2] if side else positions[order, 1]
     axes.scatter(positions[order, 0] * 1e3, height * 1e3, s=2, c=base * shade[:, None], linewidths=0)
+    for particle in particles:
+        place = particle.at(time)
+        if place is not None:
+            axes.add_patch(Circle((place[0] * 1e3, place[2 if side else 1] * 1e3), particle.radius * 1e3,
+                                  facecolor="C3", edgecolor="black", linewidth=0.5, zorder=3))
     axes.set_aspect("equal")
     axes.set_title(f"{'from the side' if side else 'from above'}, {time * 1e3:.2f} ms", fontsize="small")
 
 
-def draw(run, track, path):
+def draw(run, track, particles, path):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -250,7 +309,7 @@ def draw(run, track, path):
     figure = plt.figure(figsize=(15, 8), layout="constrained")
     columns = figure.add_gridspec(1, 2 if frames else 1)
     left = columns[0].subgridspec(2, 1, height_ratios=(3, 2))
-    draw_trajectory(figure.add_subplot(left[0]), run, track)
+    draw_trajectory(figure.add_subplot(left[0]), run, track, particles)
     draw_angles(figure.add_subplot(left[1]), run, track)
     if frames:
         corners = [corner for electrode in run.layout.electrodes for corner in electrode.outline]
@@ -263,10 +322,10 @@ def draw(run, track, path):
         right = columns[1].subgridspec(len(frames) + 1, 1)
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(right[i])
-            draw_chip(axes, run, frame, side=False)
+            draw_chip(axes, run, particles, frame, side=False)
             axes.set(xlim=xs, ylim=ys, ylabel="y (mm)")
         axes = figure.add_subplot(right[-1])
-        draw_chip(axes, run, frames[len(frames) // 2], side=True)
+        draw_chip(axes, run, particles, frames[len(frames) // 2], side=True)
         plate = run.layout.lower.z
         axes.set(xlim=xs, ylim=[(plate - 0.2 * radius) * 1e3, (top + 0.2 * radius) * 1e3], xlabel="x (mm)",
                  ylabel="z (mm)")
@@ -279,6 +338,7 @@ def main():
     parser.add_argument("bag")
     parser.add_argument("--chip", default="/chip", help="name of the chip node")
     parser.add_argument("--droplet", type=int, help="id; default: the one that is there longest")
+    parser.add_argument("--target", type=int, help="channel where microparticles were to be left; default: the nearest")
     parser.add_argument("--picture", help="default: BAG with .png")
     parser.add_argument("--no-picture", action="store_true")
     arguments = parser.parse_args()
@@ -286,9 +346,10 @@ def main():
     try:
         run = Run(arguments.bag, arguments.chip)
         track = Track(run, arguments.droplet)
-        summarize(run, track, arguments.bag)
+        particles = particle_tracks(run)
+        summarize(run, track, particles, arguments.target, arguments.bag)
         if not arguments.no_picture:
-            draw(run, track, picture)
+            draw(run, track, particles, picture)
             print(f"{'picture:':17} {os.path.abspath(picture)}")
     except (Unusable, OSError) as error:
         print(f"summarize_run: {error}", file=sys.stderr)
