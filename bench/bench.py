@@ -33,7 +33,7 @@ LAMMPS_INPUTS = {
 LAMMPS_NOTE = ("LAMMPS {}, one process. Speed only: stock mdpd/rhosum weighs densities with Lucy's kernel in place of "
                "Warren's, so its liquid has density 6.71 and surface tension 9.5, and its forces have no potential. Most of "
                "its time in W3 goes into neighbour lists of frozen wall beads")
-W3_NOTE = "W3 is the droplet alone: the 612 beads of a microparticle's shell join when the engine has microparticles"
+MICROPARTICLE_NOTE = "With a microparticle the beads are those of the liquid: its own 612 come on top"
 
 LARGEST = "W4_bulk_1M"
 SLOW_KERNELS = ("scalar", "reference", "lammps")  # run once where a step takes seconds
@@ -272,7 +272,7 @@ def run(arguments, states):
 
     machine.update(compiler=bench.context.get("compiler"), flags=bench.context.get("flags"),
                    kernels=list(dict.fromkeys(case.kernel for case in timed)), others_cores=others.cores())
-    notes = [W3_NOTE] + ([LAMMPS_NOTE.format(lammps.version)] if lammps else [])
+    notes = [MICROPARTICLE_NOTE] + ([LAMMPS_NOTE.format(lammps.version)] if lammps else [])
     return {"machine": machine, "rounds": arguments.rounds, "quick": arguments.quick, "bytes_per_bead": bytes_per_bead,
             "notes": notes, "results": samples.rows()}
 

@@ -33,7 +33,8 @@ using namespace dmf::engine;
 struct Workload {
   std::string name;
   Parameters parameters;
-  double droplet_radius;  ///< 0: the box is full
+  double droplet_radius;       ///< 0: the box is full
+  bool microparticle = false;  ///< one of 612 beads at the droplet's foot
 };
 
 struct Options {
@@ -67,6 +68,7 @@ std::vector<Workload> workloads() {
   return {{"W1_bulk_20", bulk(20), 0},
           {"W2_droplet_R10", plate(), 10},
           {"W3_droplet_R5", plate(), 5},
+          {"W3_droplet_R5_microparticle", plate(), 5, true},
           {"W4_bulk_1M", bulk_of_cells(63), 0}};
 }
 
@@ -74,7 +76,7 @@ std::vector<Workload> workloads() {
 std::vector<Workload> size_sweep() {
   std::vector<Workload> sweep;
   for (const int cells : {6, 8, 11, 14, 18, 23, 29, 37, 46, 63})
-    sweep.push_back({"bulk_" + std::to_string(4 * cells * cells * cells), bulk_of_cells(cells), 0});
+    sweep.push_back({"bulk_" + std::to_string(4 * cells * cells * cells), bulk_of_cells(cells), 0, false});
   return sweep;
 }
 
@@ -84,6 +86,11 @@ void place(Simulation& simulation, const Workload& workload) {
     simulation.add_droplet({{0, 0, workload.droplet_radius}, workload.droplet_radius});
   else
     simulation.fill_box();
+  if (workload.microparticle) {
+    MicroparticlePlacement beside;
+    beside.center = {5.4, 0};
+    simulation.add_microparticle(beside);
+  }
 }
 
 /// The state of the workload's liquid after its starting lattice has melted.
@@ -94,7 +101,8 @@ std::string melted(const Workload& workload, const std::string& folder) {
   Simulation simulation(workload.parameters, ContactAngleCurve::lan2016());
   place(simulation, workload);
   const auto beads = static_cast<double>(simulation.observe()->moving_beads);
-  const int steps = static_cast<int>(std::clamp(2.5e7 / beads, 100.0, 500.0));
+  // A microparticle is wet after 20 tau.
+  const int steps = workload.microparticle ? 3000 : static_cast<int>(std::clamp(2.5e7 / beads, 100.0, 500.0));
   for (int k = 0; k < steps; ++k) simulation.step();
   std::string state = simulation.save_state();
   if (!path.empty() && !(std::ofstream(path, std::ios::binary) << state).flush())

@@ -6,6 +6,7 @@ TITLES = {
     "W1_bulk_20": "W1 bulk 20³, periodic",
     "W2_droplet_R10": "W2 droplet R = 10 on its wall",
     "W3_droplet_R5": "W3 droplet R = 5 on a 150 × 70 plate",
+    "W3_droplet_R5_microparticle": "W3 with a microparticle of 612 beads",
     "W4_bulk_1M": "W4 bulk of a million beads",
 }
 COLUMNS = ("workload", "beads", "kernel", "threads", "wait", "ns per bead-step", "runs", "spread", "reference/this",
