@@ -152,7 +152,7 @@ Parameters dry_plate(ContactModel model) {
 }
 
 TEST(Contact, SinksToWhereHertzBalancesTheAdhesionOfTheWall) {
-  Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016());
+  Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016(), {1, "auto"});
   simulation.add_microparticle(sphere_at({8, 8}));
   run(simulation, 20000);
   const MicroparticleTotals totals = only_one(simulation).totals;
@@ -169,7 +169,7 @@ TEST(Contact, SinksToWhereHertzBalancesTheAdhesionOfTheWall) {
 TEST(Contact, StaysWhereItIsOnAPlateTiltedBelowTheFrictionAngleAndSlidesBeyond) {
   // Adhesion adds to the weight: it starts to slide at f_s (load + weight) = pull.
   for (const double pull : {50.0, 100.0}) {
-    Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016());
+    Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016(), {1, "auto"});
     MicroparticlePlacement placement = sphere_at({8, 8});
     placement.z = 1 - std::pow(298 / (4.0 / 3.0 * 1e6), 2.0 / 3.0);  // in balance from the start
     simulation.add_microparticle(placement);
@@ -257,7 +257,7 @@ TEST(SmoothSphere, IsSwallowedAsAShellIsAndKeepsMomentum) {
 }
 
 TEST(SmoothSphere, RestsOnTheWallWithTheAdhesionOfAShell) {
-  Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016());
+  Simulation simulation(dry_plate(ContactModel::lan2016), ContactAngleCurve::lan2016(), {1, "auto"});
   MicroparticlePlacement placement = sphere_at({8, 8});
   placement.smooth = true;
   simulation.add_microparticle(placement);
@@ -311,7 +311,7 @@ TEST(Microparticle, LeavesTheSameBitsForEveryInstructionSetThreadsAndARestart) {
 }
 
 TEST(Microparticle, IsPickedUpAndDroppedWithAnEventEach) {
-  Simulation simulation(plate(20, 12), ContactAngleCurve::lan2016());
+  Simulation simulation(plate(20, 12), ContactAngleCurve::lan2016(), {1, "auto"});
   MicroparticlePlacement placement = sphere_at({6, 10});
   placement.magnetic = true;
   const std::uint32_t id = simulation.add_microparticle(placement);
@@ -330,6 +330,28 @@ TEST(Microparticle, IsPickedUpAndDroppedWithAnEventEach) {
   events = simulation.take_microparticle_events();
   ASSERT_GE(events.size(), 1u);
   EXPECT_EQ(events[0].kind, MicroparticleEvent::Kind::dropped_off);
+}
+
+/// A small droplet set on a microparticle on the wall, after 40 tau.
+double height_in_a_droplet(double attraction, double& immersion) {
+  Simulation simulation(plate(20, 12), ContactAngleCurve::lan2016(), {1, "auto"});
+  simulation.set_wettability([](double, double) { return 100.0; });
+  MicroparticlePlacement placement = sphere_at({10, 10});
+  placement.attraction = attraction;
+  simulation.add_microparticle(placement);
+  simulation.add_droplet({{10.5, 10, 5.95}, 3.4});
+  run(simulation, 4000);
+  immersion = only_one(simulation).immersion;
+  return only_one(simulation).position.z();
+}
+
+TEST(Wetting, HydrophobicMicroparticlesStayOnTheWallAndHydrophilicOnesLiftOff) {
+  // Lan 4.1.2: in contact for A_ls -15 to -17, swallowed for -18 to -19.5.
+  double immersion = 0;
+  EXPECT_NEAR(height_in_a_droplet(-15, immersion), 1, 0.03);
+  EXPECT_GT(immersion, 0.3);
+  EXPECT_GT(height_in_a_droplet(-20, immersion), 1.3);
+  EXPECT_GT(immersion, 0.9);
 }
 
 TEST(BadMicroparticle, IsRefusedWithWhatWouldWorkAndChangesNothing) {
