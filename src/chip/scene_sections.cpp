@@ -76,6 +76,7 @@ engine::MicroparticleParameters read_microparticle_model(const YamlReader& root)
                       ? engine::ContactModel::coulomb
                       : engine::ContactModel::lan2016;
   model.elastic_modulus = section->number("elastic_modulus", {}, model.elastic_modulus);
+  model.contact_damping = section->number("contact_damping", {}, model.contact_damping);
   model.wall_attraction = section->number("wall_attraction", {}, model.wall_attraction);
   model.liquid_repulsion = section->number("liquid_repulsion", {}, model.liquid_repulsion);
   model.particle_adhesion = section->number("particle_adhesion", {}, model.particle_adhesion);

@@ -43,6 +43,8 @@ void check_liquid(const LiquidParameters& liquid, RangeCheck& check) {
 void check_microparticles(const MicroparticleParameters& model, RangeCheck& check) {
   check.within("microparticle_model.elastic_modulus", model.elastic_modulus, tiny, 1e12,
                "above 0 up to 1e12 (k_BT / r_c^3)");
+  check.within("microparticle_model.contact_damping", model.contact_damping, 0, 2,
+               "0 to 2 (of the critical damping)");
   check.within("microparticle_model.wall_attraction", model.wall_attraction, -200, 0,
                "-200 to 0 (attraction is negative)");
   check.within("microparticle_model.liquid_repulsion", model.liquid_repulsion, tiny, 500,

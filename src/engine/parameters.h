@@ -87,6 +87,7 @@ enum class ContactModel {
 struct MicroparticleParameters {
   ContactModel contact = ContactModel::lan2016;
   double elastic_modulus = 1e6;    ///< E of Hertz's law, k_BT / r_c^3; above 0, limited by time_step
+  double contact_damping = 0.0;    ///< of Hertz's contact with the wall, of the critical one; [0, 2]
   double wall_attraction = -1.0;   ///< A_sw of each of its beads and wall bead; [-200, 0]
   double liquid_repulsion = 3.0;   ///< B_ls; (0, 500]
   double particle_adhesion = 0.0;  ///< force that holds two touching microparticles of radius 1; [0, 1e6]

@@ -166,6 +166,18 @@ TEST(Contact, SinksToWhereHertzBalancesTheAdhesionOfTheWall) {
   EXPECT_NEAR(load, 298, 1);
 }
 
+TEST(Contact, DampingBringsItToRestWhereHertzBalancesTheAdhesion) {
+  Parameters parameters = dry_plate(ContactModel::lan2016);
+  parameters.microparticles.contact_damping = 0.3;
+  Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  simulation.add_microparticle(sphere_at({8, 8}));
+  run(simulation, 1000);
+  const MicroparticleObservation rested = only_one(simulation);
+  EXPECT_EQ(rested.contact_fraction, 1);
+  EXPECT_LT(rested.velocity.norm(), 1e-6);
+  EXPECT_NEAR(hertz_force(1e6, 1, 1 - rested.position.z()), rested.normal_force, 0.01);
+}
+
 TEST(Contact, StaysWhereItIsOnAPlateTiltedBelowTheFrictionAngleAndSlidesBeyond) {
   // Adhesion adds to the weight: it starts to slide at f_s (load + weight) = pull.
   for (const double pull : {50.0, 100.0}) {

@@ -46,6 +46,14 @@ double hertz_force(double elastic_modulus, double radius, double indentation) {
   return 4.0 / 3.0 * elastic_modulus * std::sqrt(radius) * indentation * std::sqrt(indentation);
 }
 
+double damped_hertz_force(double elastic_modulus, double radius, double indentation, double mass,
+                          double damping, double parting) {
+  const double elastic = hertz_force(elastic_modulus, radius, indentation);
+  if (damping == 0) return elastic;
+  const double stiffness = 2.0 * elastic_modulus * std::sqrt(radius * indentation);
+  return std::max(0.0, elastic - 2.0 * damping * std::sqrt(mass * stiffness) * parting);
+}
+
 double largest_elastic_modulus(double mass, double radius, double load, double time_step) {
   // k = 2 E sqrt(R d) with F = 4/3 E sqrt(R) d^(3/2), so k^3 = 6 E^2 R F.
   const double stiffness = mass * 0.25 / (time_step * time_step);

@@ -39,6 +39,12 @@ struct FrictionReport {
 /// Against a second sphere R is 1 / (1/R_1 + 1/R_2).
 double hertz_force(double elastic_modulus, double radius, double indentation);
 
+/// Hertz's force with a damping in parallel that is `damping` times the critical one of the contact's present
+/// stiffness k = 2 E sqrt(R d): -2 damping sqrt(m k) times the speed at which the indentation shrinks. It never
+/// pulls. @param parting  speed at which the surfaces part, r_c / tau.
+double damped_hertz_force(double elastic_modulus, double radius, double indentation, double mass,
+                          double damping, double parting);
+
 /// The largest E for which a contact that carries `load` is followed by `time_step`: its angular frequency
 /// sqrt(k / m), with the stiffness k = dF/dd of Hertz's law under that load, times time_step stays below 0.5
 /// (velocity-Verlet is stable up to 2; Lan's contact, E = 1e6, has 0.13). k_BT / r_c^3.

@@ -232,10 +232,13 @@ void Microparticles::touch_sides(Microparticle& particle) {
         const double distance =
             side > 0 ? centre[axis] - domain.lower[axis] : domain.upper[axis] - centre[axis];
         if (distance >= sphere.radius) continue;
-        const double normal =
-            hertz_force(parameters_.microparticles.elastic_modulus, sphere.radius, sphere.radius - distance);
-        const Vector3d force = side * normal * Vector3d::Unit(axis);
+        const MicroparticleParameters& model = parameters_.microparticles;
         const Vector3d to_contact = arm - side * distance * Vector3d::Unit(axis);
+        const Vector3d velocity = particle.body.velocity + particle.body.angular_velocity().cross(to_contact);
+        const double normal =
+            damped_hertz_force(model.elastic_modulus, sphere.radius, sphere.radius - distance,
+                               particle.body.mass, model.contact_damping, side * velocity[axis]);
+        const Vector3d force = side * normal * Vector3d::Unit(axis);
         particle.force += force;
         particle.torque += to_contact.cross(force);
         // The other sides of the box only keep things in: no friction.
