@@ -40,8 +40,8 @@ struct FrictionReport {
 double hertz_force(double elastic_modulus, double radius, double indentation);
 
 /// Hertz's force with a damping in parallel that is `damping` times the critical one of the contact's present
-/// stiffness k = 2 E sqrt(R d): -2 damping sqrt(m k) times the speed at which the indentation shrinks. It never
-/// pulls. @param parting  speed at which the surfaces part, r_c / tau.
+/// stiffness k = 2 E sqrt(R d): -2 damping sqrt(m k) times the speed at which the indentation shrinks. It
+/// never pulls. @param parting  speed at which the surfaces part, r_c / tau.
 double damped_hertz_force(double elastic_modulus, double radius, double indentation, double mass,
                           double damping, double parting);
 

@@ -169,32 +169,17 @@ struct Partners {
   UnsignedLanes key;
 };
 
-/// Liquid met by liquid, in slots.
-struct LiquidInSlots {
-  const PairPass& pass;
-  SlotsOfBeads slots;
-  Lanes attraction;
-  HWY_INLINE Partners load(std::size_t k) const {
-    Partners j;
-    Lanes key;
-    load_records(pass.position, slots.from(k), j.x, j.y, j.z, key);
-    load_records(pass.predicted, slots.from(k), j.vx, j.vy, j.vz, j.density);
-    j.attraction = attraction;
-    j.key = bits_of(key);
-    return j;
-  }
-};
-
-/// Liquid met by a microparticle's bead, which says how much it attracts.
+/// Liquid, named by slot for liquid, by index for a microparticle's bead, which says how much it attracts.
+template <class Indices>
 struct Liquid {
   const PairPass& pass;
-  const std::uint32_t* indices;
+  Indices indices;
   Lanes attraction;
   HWY_INLINE Partners load(std::size_t k) const {
     Partners j;
     Lanes key;
-    load_records(pass.position, BeadIndices{indices + k}, j.x, j.y, j.z, key);
-    load_records(pass.predicted, BeadIndices{indices + k}, j.vx, j.vy, j.vz, j.density);
+    load_records(pass.position, indices.from(k), j.x, j.y, j.z, key);
+    load_records(pass.predicted, indices.from(k), j.vx, j.vy, j.vz, j.density);
     j.attraction = attraction;
     j.key = bits_of(key);
     return j;
@@ -300,7 +285,7 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
                                 packed.bead_in_slot};
-    add_forces<part, across_periodic>(pass, law, i, LiquidInSlots{pass, in_range, law.attraction},
+    add_forces<part, across_periodic>(pass, law, i, Liquid<SlotsOfBeads>{pass, in_range, law.attraction},
                                       block.in_range_count(bead), total);
     if (wall_candidates > 0) {
       const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
@@ -366,7 +351,8 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
       const Receiver i = receiver(bead);
       const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
       add_forces<PairForce::all, true>(
-          pass, in_lanes(law), i, Liquid{pass, packed.foreign_in_range, Lanes(i.position.w)}, count, total);
+          pass, in_lanes(law), i, Liquid<BeadIndices>{pass, {packed.foreign_in_range}, Lanes(i.position.w)},
+          count, total);
       pass.bodies.liquid_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
     }
     candidates =

@@ -189,6 +189,7 @@ HWY_INLINE void load_consecutive(const Record* records, Lanes& x, Lanes& y, Lane
 struct BeadIndices {
   const std::uint32_t* indices;
   HWY_INLINE std::uint32_t operator[](std::size_t lane) const { return indices[lane]; }
+  HWY_INLINE BeadIndices from(std::size_t k) const { return {indices + k}; }
 };
 
 /// ... or by slot.
