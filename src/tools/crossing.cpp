@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chip/experiment.h"
+#include "tools/largest_droplet.h"
 
 namespace dmf::tools {
 
@@ -17,10 +18,8 @@ Crossing run_crossing(const chip::Scene& scene, std::uint64_t seed, double limit
     for (std::uint32_t k = 0; k < interval; ++k) experiment.step();
     const auto snapshot = experiment.observe();
     bead_steps += static_cast<double>(interval) * static_cast<double>(snapshot->moving_beads);
-    if (snapshot->droplets.empty()) continue;
-    const engine::DropletObservation* largest = &snapshot->droplets.front();
-    for (const auto& droplet : snapshot->droplets)
-      if (droplet.beads > largest->beads) largest = &droplet;
+    const engine::DropletObservation* largest = largest_droplet(*snapshot);
+    if (!largest) continue;
     for (auto& [x, time] : crossing.passed)
       if (std::isnan(time) && largest->centroid.x() >= x) time = snapshot->time - scene.settle_time;
   }

@@ -9,6 +9,7 @@
 
 #include "engine/archive.h"
 #include "engine/simulation.h"
+#include "tools/largest_droplet.h"
 #include "tools/saved_run.h"
 
 namespace dmf::tools {
@@ -77,13 +78,6 @@ struct Course {
   Sums start;
   double ahead = 0, looks = 0;
 };
-
-const DropletObservation* largest_droplet(const Snapshot& snapshot) {
-  const DropletObservation* largest = nullptr;
-  for (const DropletObservation& droplet : snapshot.droplets)
-    if (!largest || droplet.beads > largest->beads) largest = &droplet;
-  return largest;
-}
 
 class Run {
  public:

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/observe/contact_angle.h"
+#include "tools/largest_droplet.h"
 
 namespace dmf::tools {
 namespace {
@@ -17,10 +18,8 @@ engine::ContactAngleCurve uncalibrated() {
 
 void sample(const engine::Simulation& simulation, engine::SessileAngle& meter, double& temperature) {
   const auto snapshot = simulation.observe({true, false});
-  if (snapshot->droplets.empty()) return;
-  const engine::DropletObservation* largest = &snapshot->droplets.front();
-  for (const auto& droplet : snapshot->droplets)
-    if (droplet.beads > largest->beads) largest = &droplet;
+  const engine::DropletObservation* largest = largest_droplet(*snapshot);
+  if (!largest) return;
   const Eigen::Vector3f foot(static_cast<float>(largest->centroid.x()),
                              static_cast<float>(largest->centroid.y()),
                              static_cast<float>(simulation.parameters().domain.lower.z()));

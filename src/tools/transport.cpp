@@ -11,6 +11,7 @@
 
 #include "chip/experiment.h"
 #include "engine/archive.h"
+#include "tools/largest_droplet.h"
 #include "tools/saved_run.h"
 
 namespace dmf::tools {
@@ -64,13 +65,6 @@ std::string as_csv(const std::vector<TransportRecord>& records) {
     text += "\n";
   }
   return text;
-}
-
-const DropletObservation* largest_droplet(const engine::Snapshot& snapshot) {
-  const DropletObservation* largest = nullptr;
-  for (const DropletObservation& droplet : snapshot.droplets)
-    if (!largest || droplet.beads > largest->beads) largest = &droplet;
-  return largest;
 }
 
 /// Looks at an experiment again and again, and knows what the last look has seen.
