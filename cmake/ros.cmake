@@ -19,6 +19,7 @@ find_package(catkin REQUIRED COMPONENTS
   visualization_msgs)
 
 add_message_files(FILES
+  Capacitance.msg
   ChipState.msg
   Command.msg
   Droplet.msg
@@ -34,12 +35,16 @@ add_message_files(FILES
 add_service_files(FILES
   AddMicroparticle.srv
   Checkpoint.srv
+  DetectShorts.srv
   DispenseDroplet.srv
+  ExplainDroplet.srv
   GetLayout.srv
   GetState.srv
+  InjectFault.srv
   LoadPattern.srv
   Remove.srv
   SetBodyForces.srv
+  SetDisabledChannels.srv
   SetElectrodeVoltages.srv
   SetElectrodes.srv
   SetHv.srv
