@@ -43,7 +43,11 @@ struct Write {
   void operator()(const DispenseDroplet& command) const {
     json["x"] = command.x;
     json["y"] = command.y;
-    json["volume"] = command.volume;
+    if (command.fills > 0) {
+      json["fills"] = command.fills;
+    } else {
+      json["volume"] = command.volume;
+    }
   }
   void operator()(const AddMicroparticle& command) const {
     json["x"] = command.x;

@@ -38,9 +38,10 @@ struct SetWettability {  ///< piecewise-linear theta(x) over the whole plate, co
 struct LoadPattern {  ///< starts a named timed sequence of the scene, in place of the one that runs
   std::string name;
 };
-struct DispenseDroplet {  ///< a droplet on the plate above (x, y)
+struct DispenseDroplet {  ///< a droplet on the plate above (x, y), or a pancake between two plates
   double x = 0, y = 0;    ///< m
-  double volume = 0;      ///< m^3, of the sphere that is placed just touching the plate
+  double volume = 0;      ///< m^3; 0: `fills` says it
+  double fills = 0;       ///< between two plates: so many times the electrode nearest to (x, y)
 };
 struct AddMicroparticle {   ///< a rigid body of beads at rest
   double x = 0, y = 0;      ///< m, of a sphere's centre; for `points` the place of their origin

@@ -56,6 +56,12 @@ Command read_dispense_droplet(const YamlReader& reader, const Units& units) {
   DispenseDroplet command;
   command.x = reader.quantity("x", Dimension::length, {}) * units.length_m;
   command.y = reader.quantity("y", Dimension::length, {}) * units.length_m;
+  if (reader.has("fills")) {
+    if (reader.has("radius") || reader.has("volume"))
+      reader.report("fills", "given together with radius or volume, allowed: one of the three");
+    command.fills = reader.number("fills", Range::above(0));
+    return command;
+  }
   // A volume is taken as it stands: the way over a radius would cost its last bits.
   const bool by_volume = reader.has("volume") && !reader.has("radius");
   const double volume = by_volume ? reader.quantity("volume", Dimension::volume, Range::above(0))

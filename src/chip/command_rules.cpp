@@ -7,6 +7,7 @@
 #include <set>
 
 #include "chip/command_reader.h"
+#include "chip/polygon.h"
 
 namespace dmf::chip {
 
@@ -66,11 +67,20 @@ class Rules {
   void operator()(const DispenseDroplet& command) {
     check_finite("x", command.x, "m");
     check_finite("y", command.y, "m");
-    if (!(command.volume > 0 && std::isfinite(command.volume))) {
+    const auto sound = [](double value) { return value > 0 && std::isfinite(value); };
+    if (command.volume != 0 && command.fills != 0) {
+      note("fills {} given together with volume: allowed one of both", command.fills);
+    } else if (command.fills != 0 && !sound(command.fills)) {
+      note("fills {}: allowed more than 0 electrodes", command.fills);
+    } else if (command.fills == 0 && !sound(command.volume)) {
       note("volume {} m^3: allowed more than 0 m^3", command.volume);
     }
     if (!found_.empty()) return;
-    for (auto& violation : violations(placement_of(command, scene_), scene_)) found_.push_back(violation);
+    try {
+      for (auto& violation : violations(placement_of(command, scene_), scene_)) found_.push_back(violation);
+    } catch (const engine::InvalidInput& refusal) {
+      note("{}", refusal.what());
+    }
   }
 
   void operator()(const AddMicroparticle& command) {
@@ -183,11 +193,26 @@ std::vector<std::string> violations(const Command& command, const Scene& scene,
   return std::move(rules).found();
 }
 
+double filling_volume(const Scene& scene, const Vector2d& point, double count) {
+  const auto& electrodes = scene.layout.electrodes();
+  if (!scene.parameters.domain.has_top_plate() || electrodes.empty())
+    throw engine::InvalidInput(fmt::format(
+        "fills {}: a droplet fills electrodes between two plates, allowed: with domain.sides.z: plates",
+        count));
+  const auto nearest = std::min_element(
+      electrodes.begin(), electrodes.end(),
+      [&](const auto& a, const auto& b) { return distance(point, a.outline) < distance(point, b.outline); });
+  const double side = std::sqrt(shared_area(nearest->outline, nearest->outline)) + scene.layout.gap();
+  return count * side * side * engine::liquid_height(scene.parameters);
+}
+
 engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scene& scene) {
   const engine::Units& units = scene.units;
-  const double radius = sphere_radius(command.volume / units.volume_m3());
-  const double z = scene.parameters.domain.lower.z() + radius;
-  return {{command.x / units.length_m, command.y / units.length_m, z}, radius};
+  const Vector2d at(command.x / units.length_m, command.y / units.length_m);
+  const double volume =
+      command.fills > 0 ? filling_volume(scene, at, command.fills) : command.volume / units.volume_m3();
+  const double radius = sphere_radius(volume);
+  return {{at.x(), at.y(), scene.parameters.domain.lower.z() + radius}, radius};
 }
 
 engine::MicroparticlePlacement placement_of(const AddMicroparticle& command, const Scene& scene) {
@@ -225,9 +250,11 @@ std::vector<std::string> violations(const engine::DropletPlacement& placement, c
   std::vector<std::string> found;
   const engine::Domain& domain = scene.parameters.domain;
   constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
-  for (int axis = 0; axis < 3; ++axis) {
+  const double pancake = engine::pancake_radius(placement, scene.parameters);
+  const int axes = pancake > 0 ? 2 : 3;  // a pancake stands from plate to plate
+  for (int axis = 0; axis < axes; ++axis) {
     const bool cut_by_wall = axis == 2 && domain.has_wall();
-    const double reach = domain.periodic(axis) ? 0 : placement.radius;
+    const double reach = domain.periodic(axis) ? 0 : pancake > 0 ? pancake : placement.radius;
     const double lower = domain.lower[axis] + (cut_by_wall ? -placement.radius : reach);
     const double upper = domain.upper[axis] - reach;
     const double tolerance = 1e-9 * (domain.upper[axis] - domain.lower[axis]);
@@ -235,13 +262,12 @@ std::vector<std::string> violations(const engine::DropletPlacement& placement, c
     if (centre >= lower - tolerance && centre <= upper + tolerance) continue;
     if (lower > upper) {
       found.push_back(fmt::format("radius {}: allowed up to {}, what fits into the domain along {}",
-                                  length_text(placement.radius, scene.units),
+                                  length_text(reach, scene.units),
                                   length_text(0.5 * domain.size()[axis], scene.units), kAxes[axis]));
     } else {
       found.push_back(fmt::format("centre's {} {}: allowed {} to {} for a radius of {}", kAxes[axis],
                                   length_text(centre, scene.units), length_text(lower, scene.units),
-                                  length_text(upper, scene.units),
-                                  length_text(placement.radius, scene.units)));
+                                  length_text(upper, scene.units), length_text(reach, scene.units)));
     }
   }
   return found;

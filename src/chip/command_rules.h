@@ -17,7 +17,12 @@ namespace dmf::chip {
 std::vector<std::string> violations(const Command& command, const Scene& scene,
                                     const engine::ContactAngleCurve& curve);
 
-/// The sphere that a DispenseDroplet asks for, just touching the plate, r_c.
+/// Volume of a pancake whose footprint is `count` times the electrode nearest to a point (r_c), half the gaps
+/// around it included, r_c^3. @throws engine::InvalidInput without a top plate or without electrodes.
+double filling_volume(const Scene& scene, const Vector2d& point, double count);
+
+/// The droplet that a DispenseDroplet asks for: a sphere just touching the plate, or a pancake, r_c.
+/// @throws engine::InvalidInput as filling_volume.
 engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scene& scene);
 
 /// The body that an AddMicroparticle asks for, reduced units.

@@ -47,9 +47,11 @@ Domain read_domain(const YamlReader& root) {
   constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<std::string> words{"closed", "periodic"};
-    if (axis == 2) words.insert(words.begin(), "wall");
+    if (axis == 2) words.insert(words.begin(), {"wall", "plates"});
     const std::string word = sides->choice(kAxes[axis], words, words.front());
-    domain.upper_side[axis] = word == "periodic" ? Side::periodic : Side::reflecting;
+    domain.upper_side[axis] = word == "periodic" ? Side::periodic
+                              : word == "plates" ? Side::wall
+                                                 : Side::reflecting;
     domain.lower_side[axis] = word == "wall" ? Side::wall : domain.upper_side[axis];
   }
   return domain;
@@ -123,6 +125,17 @@ void read_electrowetting(const YamlReader& chip, Electrowetting& law) {
   for (const std::string& violation : violations(law)) chip.report("electrowetting", violation);
 }
 
+/// From the surface of one droplet to that of another, as they are placed, r_c.
+double distance_between(const engine::DropletPlacement& a, const engine::DropletPlacement& b,
+                        const engine::Parameters& parameters) {
+  const double pancake_a = pancake_radius(a, parameters), pancake_b = pancake_radius(b, parameters);
+  // A pancake stands from plate to plate: only x and y keep it from others.
+  if (pancake_a > 0 || pancake_b > 0)
+    return (a.center - b.center).head<2>().norm() - (pancake_a > 0 ? pancake_a : a.radius) -
+           (pancake_b > 0 ? pancake_b : b.radius);
+  return (a.center - b.center).norm() - a.radius - b.radius;
+}
+
 /// Says which electrodes reach beyond the plate.
 void check_on_plate(const YamlReader& chip, const Layout& layout, const Domain& domain) {
   for (const Electrode& electrode : layout.electrodes()) {
@@ -154,6 +167,7 @@ LiquidParameters read_liquid(const YamlReader& root) {
   liquid.bulk_density = section->number("bulk_density", {}, liquid.bulk_density);
   liquid.surface_tension = section->number("surface_tension", {}, liquid.surface_tension);
   liquid.viscosity = section->number("viscosity", {}, liquid.viscosity);
+  liquid.wall_distance = section->number("wall_distance", {}, liquid.wall_distance);
   return liquid;
 }
 
@@ -201,14 +215,21 @@ std::optional<engine::ContactAngleCurve> read_wettability(const YamlReader& root
   std::string calibration = kDefaultCalibration;
   // The section is optional, and so is what is wrong with the default calibration: noted at the root then.
   const auto section = root.optional_mapping("wettability");
+  std::optional<double> top_angle;  // of an unpowered plate like the other one, unless told
   if (section) {
     calibration = section->text("calibration", calibration);
     scene.electrowetting.rest_angle =
         section->quantity("rest_angle", Dimension::angle, {}, scene.electrowetting.rest_angle);
+    if (section->has("top_angle")) {
+      if (!scene.parameters.domain.has_top_plate())
+        section->report("top_angle", "given without a top plate, allowed: with domain.sides.z: plates");
+      top_angle = section->quantity("top_angle", Dimension::angle, {});
+    }
     if (const auto program = section->optional_mapping("program")) {
       scene.program = std::get<SetWettability>(read_command("set_wettability", *program, scene.units));
     }
   }
+  scene.parameters.wall.top_contact_angle = top_angle.value_or(scene.electrowetting.rest_angle);
   std::optional<engine::ContactAngleCurve> curve;
   attempt(section.value_or(root), section ? "calibration" : "", [&] {
     if (calibration != kLanFormula) scene.calibration_file = find_config("calibration", calibration);
@@ -245,15 +266,24 @@ void read_droplets(const YamlReader& root, Scene& scene) {
   const Domain& domain = scene.parameters.domain;
   for (const YamlReader& section : root.mappings("droplets")) {
     const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
-    const double radius = read_radius(section);
-    if (centre.size() < 2 || radius <= 0) continue;
+    const bool fills = section.has("fills");
+    if (fills && (section.has("radius") || section.has("volume")))
+      section.report("fills", "given together with radius or volume, allowed: one of the three");
+    double radius = fills ? 0.0 : read_radius(section);
+    const double count = fills ? section.number("fills", Range::above(0)) : 0.0;
+    if (centre.size() < 2) continue;
+    if (count > 0)
+      attempt(section, "fills", [&] {
+        radius = sphere_radius(filling_volume(scene, {centre[0], centre[1]}, count));
+      });
+    if (radius <= 0) continue;
     const double touching = domain.lower.z() + radius;
     const engine::DropletPlacement placement{
         {centre[0], centre[1], centre.size() == 3 ? centre[2] : touching}, radius};
     for (const std::string& violation : violations(placement, scene)) section.report("", violation);
     for (const engine::DropletPlacement& other : scene.droplets) {
       // The engine wants r_c between beads of two droplets.
-      const double between = (placement.center - other.center).norm() - radius - other.radius;
+      const double between = distance_between(placement, other, scene.parameters);
       if (between < 1) {
         section.report("", fmt::format("{:.4g} r_c from another droplet, allowed: 1 r_c or more", between));
       }
@@ -305,6 +335,10 @@ void check_angles(const YamlReader& root, const Scene& scene, const engine::Cont
   };
   if (!inside(law.rest_angle)) {
     root.report_path(fmt::format("wettability.rest_angle: {} degrees, {}", law.rest_angle, allowed));
+  }
+  const double top = scene.parameters.wall.top_contact_angle;
+  if (scene.parameters.domain.has_top_plate() && !inside(top)) {
+    root.report_path(fmt::format("wettability.top_angle: {} degrees, {}", top, allowed));
   }
   const double lowest = law.contact_angle(law.max_voltage);
   if (!scene.layout.electrodes().empty() && !inside(lowest)) {

@@ -52,9 +52,9 @@ enum class MicroparticlePlace { dry, front, rear, inside };
 /// divided by the difference of `steps`.
 struct MicroparticleTotals {
   std::uint64_t steps = 0;
-  std::uint64_t steps_in_contact = 0;          ///< with the wall
+  std::uint64_t steps_in_contact = 0;          ///< with the lower plate
   double height = 0;                           ///< of the centre over the wall plane, r_c
-  double normal_force = 0;                     ///< of the wall, k_BT / r_c
+  double normal_force = 0;                     ///< of the lower plate, k_BT / r_c
   Vector3d drive_force = Vector3d::Zero();     ///< of the liquid
   Vector3d friction_force = Vector3d::Zero();  ///< of the wall, in its plane
 };
@@ -75,7 +75,7 @@ struct MicroparticleObservation {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Vector3d velocity = Vector3d::Zero();
   Vector3d angular_velocity = Vector3d::Zero();
-  double contact_fraction = 0;  ///< of the last steps: how many in contact with the wall
+  double contact_fraction = 0;  ///< of the last steps: how many in contact with the lower plate
   double normal_force = 0;
   Vector3d drive_force = Vector3d::Zero();
   Vector3d friction_force = Vector3d::Zero();

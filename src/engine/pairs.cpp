@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 
 namespace dmf::engine {
 namespace {
@@ -74,7 +73,7 @@ void Pairs::lay_grid(const AlignedVector<Record>& positions) {
     grid_.lay(domain_, bounds.lower, bounds.upper, range_);
 }
 
-void Pairs::rebuild(Beads& beads, const PlaneWall& wall) {
+void Pairs::rebuild(Beads& beads, const Plates& wall) {
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
@@ -91,7 +90,7 @@ void Pairs::rebuild(Beads& beads, const PlaneWall& wall) {
   ++builds_;
 }
 
-void Pairs::restore(const Beads& beads, const PlaneWall& wall) {
+void Pairs::restore(const Beads& beads, const Plates& wall) {
   // `listed` is sorted already; sorting it again is the identity, and gives the grid back.
   lay_grid(beads.listed);
   grid_.sort(beads.listed.data(), beads.size(), order_);
@@ -100,7 +99,7 @@ void Pairs::restore(const Beads& beads, const PlaneWall& wall) {
   find_neighbourhoods(beads.listed, wall);
 }
 
-void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const PlaneWall& wall) {
+void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const Plates& wall) {
   divide_into_blocks();
   std::uint32_t most = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
@@ -139,28 +138,30 @@ void Pairs::divide_into_blocks() {
 }
 
 void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
-                      const PlaneWall& wall) const {
+                      const Plates& wall) const {
   Bounds around = bounds_of(listed, cell.begin, cell.end);
   around.lower.array() -= static_cast<float>(range_);
   around.upper.array() += static_cast<float>(range_);
-  const auto append = [&](const CellGrid& grid, std::vector<BeadRun>& runs, std::uint32_t& slots) {
-    const std::size_t before = runs.size();
-    append_runs(grid, domain_, around.lower, around.upper, runs);
+  const auto note_new = [&](const std::vector<BeadRun>& runs, std::size_t before, std::uint32_t& slots) {
     std::uint32_t count = 0;
     for (std::size_t run = before; run < runs.size(); ++run) {
       count += runs[run].end - runs[run].begin;
       cell.across_periodic |= runs[run].image != PeriodicImages::here;
     }
     slots = std::max(slots, count);
-    return std::make_pair(static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(runs.size()));
   };
-  std::tie(cell.first_run, cell.end_run) = append(grid_, block.runs, block.slots);
-  if (wall.size() > 0 && around.lower.z() <= wall.plane())
-    std::tie(cell.first_wall_run, cell.end_wall_run) = append(wall.grid(), block.wall_runs, block.wall_slots);
+  cell.first_run = static_cast<std::uint32_t>(block.runs.size());
+  append_runs(grid_, domain_, around.lower, around.upper, block.runs);
+  cell.end_run = static_cast<std::uint32_t>(block.runs.size());
+  note_new(block.runs, cell.first_run, block.slots);
+  cell.first_wall_run = static_cast<std::uint32_t>(block.wall_runs.size());
+  wall.append_runs(around.lower, around.upper, block.wall_runs);
+  cell.end_wall_run = static_cast<std::uint32_t>(block.wall_runs.size());
+  note_new(block.wall_runs, cell.first_wall_run, block.wall_slots);
   block.in_range_begin.resize(block.end - block.begin + 1);
 }
 
-void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const PlaneWall& wall) {
+void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const Plates& wall) {
   forget_bodies();
   std::vector<BodyPatch> patches;
   std::uint32_t most = 0;
@@ -172,9 +173,7 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
       smooth_neighbours_.push_back({k, {}, {}});
       append_runs(grid_, domain_, centre.array() - reach, centre.array() + reach,
                   smooth_neighbours_.back().liquid);
-      if (wall.size() > 0 && centre.z() - reach <= wall.plane())
-        append_runs(wall.grid(), domain_, centre.array() - reach, centre.array() + reach,
-                    smooth_neighbours_.back().wall);
+      wall.append_runs(centre.array() - reach, centre.array() + reach, smooth_neighbours_.back().wall);
       continue;
     }
     std::uint32_t begin = particle.first_bead;

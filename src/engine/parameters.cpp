@@ -36,6 +36,7 @@ void check_liquid(const LiquidParameters& liquid, RangeCheck& check) {
   check.within("liquid.initial_density", liquid.initial_density, 1, 12, "1 to 12 (beads per r_c^3)");
   check.within("liquid.bulk_density", liquid.bulk_density, 1, 20, "1 to 20 (beads per r_c^3)");
   check.within("liquid.viscosity", liquid.viscosity, tiny, 1000, "above 0 up to 1000 (m / (r_c tau))");
+  check.within("liquid.wall_distance", liquid.wall_distance, 0, 1, "0 to 1 (r_c)");
   check.within("liquid.surface_tension", liquid.surface_tension, tiny, 1000,
                "above 0 up to 1000 (k_BT / r_c^2)");
 }
@@ -69,10 +70,12 @@ void check_domain(const Domain& domain, double list_range, RangeCheck& check) {
         fmt::format(
             "domain.{}: {} long, allowed: at least {} (three times cutoff_radius + list_skin) when periodic",
             axes[axis], size, 3 * list_range));
-    const bool may_wet = axis == 2;
-    check.holds(
-        domain.upper_side[axis] != Side::wall && (may_wet || domain.lower_side[axis] != Side::wall),
-        fmt::format("domain.sides.{}: wall, allowed: a wall of beads only on the lower z side", axes[axis]));
+    const bool lower_wets = domain.lower_side[axis] == Side::wall;
+    const bool upper_wets = domain.upper_side[axis] == Side::wall;
+    check.holds(axis == 2 ? lower_wets || !upper_wets : !lower_wets && !upper_wets,
+                fmt::format("domain.sides.{}: wall, allowed: a wall of beads on the lower z side, and a top "
+                            "plate over it",
+                            axes[axis]));
   }
 }
 
@@ -84,6 +87,8 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check_liquid(parameters.liquid, check);
   check.within("wall.lattice_constant", parameters.wall.lattice_constant, 0.5, 1.5, "0.5 to 1.5 (r_c)");
   check.within("wall.layers", parameters.wall.layers, 1, 8, "1 to 8");
+  check.within("wall.top_contact_angle", parameters.wall.top_contact_angle, tiny, 180,
+               "above 0 up to 180 (degrees), within the calibration");
   check_microparticles(parameters.microparticles, check);
   check_domain(parameters.domain, parameters.liquid.cutoff_radius + parameters.list_skin, check);
   check.within("time_step", parameters.time_step, tiny, 0.1, "above 0 up to 0.1 (tau)");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/noise.h"
 #include "engine/observe/droplet_tracker.h"
@@ -56,6 +57,74 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
   }
 }
 
+/// Beads of the initial density in a sphere.
+double sphere_beads(double radius, const Parameters& parameters) {
+  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * parameters.liquid.initial_density;
+}
+
+void require_within(const Domain& domain, int axis, double low, double high, double cutoff_radius) {
+  static const char* const axes = "xyz";
+  if (domain.periodic(axis) ? high - low + cutoff_radius > domain.size()[axis]
+                            : low < domain.lower[axis] - 1e-9 || high > domain.upper[axis] + 1e-9)
+    throw InvalidInput(fmt::format("droplet: {} to {} along {}, allowed: within {} to {} (r_c)", low, high,
+                                   axes[axis], domain.lower[axis], domain.upper[axis]));
+}
+
+/// The sphere, cut by the wall.
+std::vector<Vector3d> sphere_sites(const DropletPlacement& placement, const Parameters& parameters) {
+  const Domain& domain = parameters.domain;
+  const Vector3d& center = placement.center;
+  const double radius = placement.radius;
+  // A sphere whose centre lies below the wall plane is a flat cap, as wide as its base.
+  const double sunk = domain.has_wall() ? std::clamp(domain.lower.z() - center.z(), 0.0, radius) : 0.0;
+  const double wide = std::sqrt(radius * radius - sunk * sunk);
+  const Vector3d reach(wide, wide, radius);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool cut_by_wall = axis == 2 && domain.has_wall();
+    require_within(domain, axis, cut_by_wall ? domain.lower.z() : center[axis] - reach[axis],
+                   center[axis] + reach[axis], parameters.liquid.cutoff_radius);
+  }
+  const double a = fcc_constant(parameters.liquid.initial_density);
+  const double unbounded = std::numeric_limits<double>::infinity();
+  const double lowest = domain.has_wall() ? domain.lower.z() + 0.5 * a : -unbounded;
+  const double highest = domain.has_top_plate() ? domain.upper.z() - 0.5 * a : unbounded;
+  std::vector<Vector3d> sites;
+  for_each_site(
+      center - Vector3d::Constant(radius), center + Vector3d::Constant(radius), Vector3d::Constant(a),
+      [&](const Vector3d& site) {
+        if ((site - center).squaredNorm() < radius * radius && site.z() >= lowest && site.z() <= highest)
+          sites.push_back(site);
+      });
+  return sites;
+}
+
+/// As many sites as the sphere has, those nearest to the axis, in whole layers half a lattice constant from
+/// both plates.
+std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Parameters& parameters) {
+  const Domain& domain = parameters.domain;
+  const double footprint = pancake_radius(placement, parameters);
+  for (int axis = 0; axis < 2; ++axis)
+    require_within(domain, axis, placement.center[axis] - footprint, placement.center[axis] + footprint,
+                   parameters.liquid.cutoff_radius);
+  const double a = fcc_constant(parameters.liquid.initial_density);
+  const auto count = static_cast<std::size_t>(std::lround(sphere_beads(placement.radius, parameters)));
+  const double between = domain.size().z() - a;  // of the lowest and the highest layer
+  const double layers = std::floor(between / (0.5 * a)) + 1;
+  const double wide = std::sqrt(static_cast<double>(count) * a * a / (2.0 * 3.14159265 * layers)) + 2.0 * a;
+  const double from = domain.lower.z() + 0.5 * (domain.size().z() - 0.5 * a * layers);
+  const Vector3d lower(placement.center.x() - wide, placement.center.y() - wide, from);
+  const Vector3d upper(placement.center.x() + wide, placement.center.y() + wide, from + 0.5 * a * layers);
+  std::vector<Vector3d> sites;
+  for_each_site(lower, upper, Vector3d::Constant(a), [&](const Vector3d& site) { sites.push_back(site); });
+  const auto from_axis = [&](const Vector3d& site) {
+    return (site - placement.center).head<2>().squaredNorm();
+  };
+  std::stable_sort(sites.begin(), sites.end(),
+                   [&](const Vector3d& p, const Vector3d& q) { return from_axis(p) < from_axis(q); });
+  sites.resize(std::min(count, sites.size()));
+  return sites;
+}
+
 /// A thermal velocity component of unit variance: twelve uniform numbers added up (Irwin and Hall), which is
 /// Gaussian enough for a start. Needs no logarithm, whose last bit depends on the processor.
 double thermal(StepKey key, std::uint32_t id, std::uint32_t component) {
@@ -69,41 +138,29 @@ double thermal(StepKey key, std::uint32_t id, std::uint32_t component) {
 
 }  // namespace
 
+double liquid_height(const Parameters& parameters) {
+  return parameters.domain.size().z() - 2.0 * parameters.liquid.wall_distance;
+}
+
+double pancake_radius(const DropletPlacement& placement, const Parameters& parameters) {
+  const double height = liquid_height(parameters);
+  if (!parameters.domain.has_top_plate() || 2.0 * placement.radius <= height) return 0.0;
+  return std::sqrt(4.0 / 3.0 * std::pow(placement.radius, 3) / height);
+}
+
 std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Parameters& parameters) {
-  const Domain& domain = parameters.domain;
   const Vector3d& center = placement.center;
   const double radius = placement.radius;
   if (!center.allFinite() || !std::isfinite(radius) || radius <= 0)
     throw InvalidInput(
         fmt::format("droplet: center ({}, {}, {}), radius {}, allowed: finite, radius above 0 (r_c)",
                     center.x(), center.y(), center.z(), radius));
-  const double a = fcc_constant(parameters.liquid.initial_density);
-  static const char* const axes = "xyz";
-  // A sphere whose centre lies below the wall plane is a flat cap, as wide as its base.
-  const double sunk = domain.has_wall() ? std::clamp(domain.lower.z() - center.z(), 0.0, radius) : 0.0;
-  const Vector3d reach(std::sqrt(radius * radius - sunk * sunk), std::sqrt(radius * radius - sunk * sunk),
-                       radius);
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool cut_by_wall = axis == 2 && domain.has_wall();
-    const double low = cut_by_wall ? domain.lower.z() : center[axis] - reach[axis],
-                 high = center[axis] + reach[axis];
-    if (domain.periodic(axis) ? 2 * reach[axis] + parameters.liquid.cutoff_radius > domain.size()[axis]
-                              : low < domain.lower[axis] - 1e-9 || high > domain.upper[axis] + 1e-9)
-      throw InvalidInput(fmt::format("droplet: {} to {} along {}, allowed: within {} to {} (r_c)", low, high,
-                                     axes[axis], domain.lower[axis], domain.upper[axis]));
-  }
-  if (4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * parameters.liquid.initial_density >
-      2.0 * static_cast<double>(parameters.max_beads))
+  if (sphere_beads(radius, parameters) > 2.0 * static_cast<double>(parameters.max_beads))
     throw InvalidInput(fmt::format("droplet: radius {} r_c holds more than max_beads ({}) beads", radius,
                                    parameters.max_beads));
-  std::vector<Vector3d> sites;
-  const double lowest =
-      domain.has_wall() ? domain.lower.z() + 0.5 * a : -std::numeric_limits<double>::infinity();
-  for_each_site(center - Vector3d::Constant(radius), center + Vector3d::Constant(radius),
-                Vector3d::Constant(a), [&](const Vector3d& site) {
-                  if ((site - center).squaredNorm() < radius * radius && site.z() >= lowest)
-                    sites.push_back(site);
-                });
+  const std::vector<Vector3d> sites = pancake_radius(placement, parameters) > 0
+                                          ? pancake_sites(placement, parameters)
+                                          : sphere_sites(placement, parameters);
   if (sites.size() < DropletTracker::fewest_beads)
     throw InvalidInput(fmt::format("droplet: {} beads, allowed: {} or more (a radius of about 1 r_c)",
                                    sites.size(), DropletTracker::fewest_beads));

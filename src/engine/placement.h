@@ -9,8 +9,8 @@
 namespace dmf::engine {
 
 /// Lattice sites (fcc, of the initial density) of a droplet: the sphere without what lies within half a
-/// lattice constant of a wall plane. @throws InvalidInput outside the domain, or for fewer than
-/// DropletTracker::fewest_beads sites.
+/// lattice constant of a wall plane, or of a pancake as many sites as the sphere would have. @throws
+/// InvalidInput outside the domain, or for fewer than DropletTracker::fewest_beads sites.
 std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Parameters& parameters);
 
 /// Lattice sites that fill lower <= position < upper. @throws InvalidInput when that leaves the domain or

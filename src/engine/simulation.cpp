@@ -19,7 +19,7 @@
 #include "engine/pairs.h"
 #include "engine/placement.h"
 #include "engine/thermostat.h"
-#include "engine/walls/plane_wall.h"
+#include "engine/walls/plates.h"
 
 namespace dmf::engine {
 namespace {
@@ -43,15 +43,15 @@ struct Simulation::State {
         curve(std::move(c)),
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
         wall(parameters.domain, parameters.wall, parameters.liquid.cutoff_radius + parameters.list_skin),
-        microparticles(parameters, wall),
+        microparticles(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),
-        tracker(parameters, wall.plane()) {}
+        tracker(parameters) {}
 
   Parameters parameters;
   ContactAngleCurve curve;
   int threads;
-  PlaneWall wall;
+  Plates wall;
   Beads beads;
   Microparticles microparticles;
   Pairs pairs;
@@ -190,6 +190,7 @@ struct Simulation::State {
 
 Simulation::Simulation(const Parameters& parameters, ContactAngleCurve curve, const Execution& execution)
     : state_(std::make_unique<State>(parameters, std::move(curve), execution)) {
+  state_->wall.set_top_wettability(parameters.wall.top_contact_angle, state_->curve);
   const double angle = state_->curve.max_angle();
   set_wettability([angle](double, double) { return angle; });
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/droplet.h"
 #include "engine/microparticle.h"
 #include "engine/observe/snapshot.h"
 #include "engine/parameters.h"
@@ -29,12 +30,6 @@ struct Execution {
 
 /// Names of the kernels that this processor can run, best first; the last is "reference", double precision.
 std::vector<std::string> available_kernels();
-
-/// A droplet to be placed: the cap of a sphere cut by the wall when `center` is nearer to it than `radius`.
-struct DropletPlacement {
-  Vector3d center;  ///< r_c
-  double radius;    ///< of the sphere, r_c
-};
 
 /// Beads, walls and their motion: the engine. Everything in reduced units. Not thread-safe: one thread owns
 /// it.

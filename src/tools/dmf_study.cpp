@@ -19,7 +19,9 @@ int main(int argc, char** argv) {
       {"time_step", study_time_step},
       {"microparticle_angle", study_microparticle_angle},
       {"forces", study_forces},
-      {"inner_flow", study_inner_flow}};
+      {"inner_flow", study_inner_flow},
+      {"plates", study_plates},
+      {"splitting", study_splitting}};
   std::string transport_titles;
   for (const StudyTitle& study : transport_studies()) {
     studies[study.name] = [name = study.name](const StudyOptions& options) {
@@ -38,6 +40,8 @@ int main(int argc, char** argv) {
       "  liquid           temperature, density, surface tension, viscosity\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
+      "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"
+      "  splitting        between two plates: up to which gap over pitch a droplet splits\n"
       "Microparticles:\n"
       "  microparticle_angle  attraction -> contact angle, floating in a film; writes microparticle.yaml\n" +
       transport_titles +

@@ -113,5 +113,7 @@ void study_transport(const std::string& name, const StudyOptions& options);
 void study_forces(const StudyOptions& options);
 /// Flow of the liquid around a microparticle, and in a droplet without one.
 void study_inner_flow(const StudyOptions& options);
+void study_plates(const StudyOptions& options);
+void study_splitting(const StudyOptions& options);
 
 }  // namespace dmf::tools

@@ -48,8 +48,8 @@ void run(Experiment& experiment, int steps) {
 }
 
 TEST(ShippedScenes, AllStart) {
-  for (const char* name :
-       {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array", "delivery_line"}) {
+  for (const char* name : {"droplet_gradient", "gradient_R5", "sessile", "electrode_line", "electrode_array",
+                           "delivery_line", "two_plates"}) {
     const Scene shipped = load_scene(name);
     Experiment experiment(shipped, {});
     experiment.step();

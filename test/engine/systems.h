@@ -9,7 +9,7 @@
 #include "engine/noise.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
-#include "engine/walls/plane_wall.h"
+#include "engine/walls/plates.h"
 
 namespace dmf::engine {
 
@@ -38,6 +38,12 @@ inline Parameters plate(double size, double height) {
   parameters.domain.upper = {size, size, height};
   parameters.domain.lower_side = {Side::periodic, Side::periodic, Side::wall};
   parameters.domain.upper_side = {Side::periodic, Side::periodic, Side::reflecting};
+  return parameters;
+}
+
+inline Parameters two_plates(double size, double gap) {
+  Parameters parameters = plate(size, gap);
+  parameters.domain.upper_side[2] = Side::wall;
   return parameters;
 }
 
@@ -135,6 +141,20 @@ inline std::vector<System> all_systems() {
     add_bead(s, {4, 4, 0});
   }
   {
+    System& s =
+        begin("pancake over a periodic edge, between plates that one bead feels both of", two_plates(14, 3));
+    s.parameters.domain.upper.z() = 1.8;
+    scatter_beads(s, 6, {-4, 3, 0}, {4, 11, 1.8},
+                  [](const Vector3d& p) { return (p - Vector3d(0, 7, p.z())).norm() < 4; });
+  }
+  {
+    System& s = begin("microparticle that touches the top plate in a pancake", two_plates(14, 3));
+    s.microparticles = {sphere_at({6, 7}, 2.0)};
+    scatter_beads(s, 6, {2, 2, 0}, {12, 12, 3}, [](const Vector3d& p) {
+      return (p - Vector3d(7, 7, p.z())).norm() < 4 && (p - Vector3d(6, 7, 2)).norm() > 1.3;
+    });
+  }
+  {
     System& s = begin("droplet around a microparticle on the wall", plate(14, 12));
     s.microparticles = {sphere_at({6, 7})};
     scatter_beads(s, 6, {2, 2, 0}, {12, 12, 8}, [](const Vector3d& p) {
@@ -169,18 +189,19 @@ inline void poison_behind(Beads& beads, BodyBeads& body_beads) {
 }
 
 /// A wall with a gradient, so that every wall bead is its own.
-inline PlaneWall wall_of(const System& system) {
-  PlaneWall wall(system.parameters.domain, system.parameters.wall,
-                 system.parameters.liquid.cutoff_radius + system.parameters.list_skin);
+inline Plates wall_of(const System& system) {
+  Plates wall(system.parameters.domain, system.parameters.wall,
+              system.parameters.liquid.cutoff_radius + system.parameters.list_skin);
   const double width = system.parameters.domain.size().x();
   wall.set_wettability([width](double x, double) { return 150 - 110 * std::clamp(x / width, 0.0, 1.0); },
                        system.curve);
+  wall.set_top_wettability(75, system.curve);
   return wall;
 }
 
 /// The microparticles of a system, every bead of them with a velocity of its own.
-inline Microparticles microparticles_of(const System& system, const PlaneWall& wall) {
-  Microparticles bodies(system.parameters, wall);
+inline Microparticles microparticles_of(const System& system) {
+  Microparticles bodies(system.parameters);
   for (const MicroparticlePlacement& placement : system.microparticles) bodies.add(placement, {});
   bodies.note_listed();
   std::uint32_t k = 0;
@@ -194,7 +215,7 @@ inline Microparticles microparticles_of(const System& system, const PlaneWall& w
 struct Sorted {
   Sorted(System& system, const std::string& kernel)
       : wall(wall_of(system)),
-        bodies(microparticles_of(system, wall)),
+        bodies(microparticles_of(system)),
         pairs(system.parameters),
         forces(system.parameters, kernel) {
     pairs.rebuild(system.beads, wall);
@@ -202,7 +223,7 @@ struct Sorted {
     poison_behind(system.beads, bodies.beads());
   }
 
-  PlaneWall wall;
+  Plates wall;
   Microparticles bodies;
   Pairs pairs;
   Forces forces;

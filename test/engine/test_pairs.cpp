@@ -36,10 +36,12 @@ void jiggle(System& system) {
       return reach * static_cast<float>(2 * scatter(31 * system.beads.id[i] + k) - 1) / 1.7321f;
     };
     Record& p = system.beads.position[i];
-    const bool wall = system.parameters.domain.has_wall();
+    const Domain& domain = system.parameters.domain;
     p.x += step(0);
     p.y += step(1);
-    p.z = wall ? std::max(p.z + step(2), 0.f) : p.z + step(2);
+    p.z += step(2);
+    if (domain.has_wall()) p.z = std::max(p.z, 0.f);
+    if (domain.has_top_plate()) p.z = std::min(p.z, static_cast<float>(domain.upper.z()));
   }
 }
 
@@ -72,7 +74,7 @@ TEST(Pairs, RunsHoldEveryWallBeadThatMayComeIntoRange) {
   for (System& system : all_systems()) {
     if (!system.parameters.domain.has_wall()) continue;
     SCOPED_TRACE(system.name);
-    const PlaneWall wall = wall_of(system);
+    const Plates wall = wall_of(system);
     Pairs pairs(system.parameters);
     pairs.rebuild(system.beads, wall);
     const double reach = system.parameters.liquid.cutoff_radius + 0.5 * system.parameters.list_skin;

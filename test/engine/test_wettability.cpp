@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
-#include "engine/walls/plane_wall.h"
+#include "engine/walls/plates.h"
 #include "engine/wettability.h"
 #include "systems.h"
 
@@ -50,9 +52,9 @@ TEST(CalibrationFile, IsReadStrictly) {
   EXPECT_THROW(ContactAngleCurve::load("/nonexistent.yaml"), InvalidInput);
 }
 
-TEST(PlaneWall, HasTheLiquidsDensityAndItsFirstLayerOnThePlane) {
+TEST(Plates, HasTheLiquidsDensityAndItsFirstLayerOnThePlane) {
   const Parameters parameters = plate(20, 10);
-  const PlaneWall wall(parameters.domain, parameters.wall, 1.2);
+  const Plates wall(parameters.domain, parameters.wall, 1.2);
   const double layer_spacing = 0.5 * parameters.wall.lattice_constant;
   EXPECT_NEAR(wall.size() / (20 * 20 * 3 * layer_spacing), 6.0, 0.1);
   double top = -1e9;
@@ -60,9 +62,33 @@ TEST(PlaneWall, HasTheLiquidsDensityAndItsFirstLayerOnThePlane) {
   EXPECT_EQ(top, 0.0);
 }
 
-TEST(PlaneWall, FccNeighboursStandAtOneOverRootTwoOfTheLatticeConstant) {
+TEST(Plates, TheTopPlateMirrorsTheLowerOneAndHasItsOwnAngle) {
+  const Parameters parameters = two_plates(12, 5);
+  Plates wall(parameters.domain, parameters.wall, 1.2);
+  const ContactAngleCurve curve = ContactAngleCurve::lan2016();
+  wall.set_wettability([](double, double) { return 120.0; }, curve);
+  wall.set_top_wettability(60, curve);
+  std::multiset<std::array<float, 3>> lower, mirrored;
+  for (const Record& bead : wall.beads()) {
+    if (bead.z <= 0) {
+      lower.insert({bead.x, bead.y, -bead.z});
+      EXPECT_FLOAT_EQ(bead.w, static_cast<float>(curve.attraction(120)));
+    } else {
+      mirrored.insert({bead.x, bead.y, bead.z - 5.f});
+      EXPECT_FLOAT_EQ(bead.w, static_cast<float>(curve.attraction(60)));
+    }
+  }
+  ASSERT_EQ(lower.size(), mirrored.size());
+  auto image = mirrored.begin();
+  for (const auto& bead : lower) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(bead[axis], (*image)[axis], 1e-5);
+    ++image;
+  }
+}
+
+TEST(Plates, FccNeighboursStandAtOneOverRootTwoOfTheLatticeConstant) {
   const Parameters parameters = plate(10, 10);
-  const PlaneWall wall(parameters.domain, parameters.wall, 1.2);
+  const Plates wall(parameters.domain, parameters.wall, 1.2);
   for (std::size_t i = 0; i < wall.size(); ++i) {
     const Record& a = wall.beads()[i];
     if (std::abs(a.x - 5) > 2 || std::abs(a.y - 5) > 2) continue;

@@ -92,8 +92,11 @@ FrictionReport apply_friction(ContactModel model, const Friction& friction,
     }
     resist_rolling(friction, contact, time_step, body);
   }
-  if (model == ContactModel::lan2016 && !contacts.empty())
-    report.rolling = in_wall(body.angular_velocity()).cross(Vector3d(0, 0, contacts.front().radius));
+  if (model == ContactModel::lan2016 && !contacts.empty()) {
+    const WallContact& contact = contacts.front();
+    const Vector3d to_centre(0, 0, std::copysign(contact.radius, -contact.arm.z()));
+    report.rolling = in_wall(body.angular_velocity()).cross(to_centre);
+  }
   return report;
 }
 

@@ -58,8 +58,7 @@ void require_apart(const Microparticle& particle, const std::vector<Vector3d>& l
 
 }  // namespace
 
-Microparticles::Microparticles(const Parameters& parameters, const PlaneWall& wall)
-    : parameters_(parameters), wall_plane_(wall.plane()), has_wall_(parameters.domain.has_wall()) {}
+Microparticles::Microparticles(const Parameters& parameters) : parameters_(parameters) {}
 
 std::uint32_t Microparticles::add(const MicroparticlePlacement& placement,
                                   const std::vector<Vector3d>& liquid, double smallest_mass) {
@@ -214,9 +213,14 @@ void Microparticles::finish(const BodyForces& far) {
     particle.body.angular_momentum += 0.5 * dt * particle.torque;
     MicroparticleTotals& totals = particle.totals;
     ++totals.steps;
-    totals.steps_in_contact += particle.contacts.empty() ? 0 : 1;
-    totals.height += particle.body.position.z() - wall_plane_;
-    for (const WallContact& contact : particle.contacts) totals.normal_force += contact.normal_force;
+    totals.height += particle.body.position.z() - parameters_.domain.lower.z();
+    bool on_lower_plate = false;
+    for (const WallContact& contact : particle.contacts)
+      if (contact.arm.z() < 0) {
+        on_lower_plate = true;
+        totals.normal_force += contact.normal_force;
+      }
+    totals.steps_in_contact += on_lower_plate ? 1 : 0;
   }
 }
 
@@ -241,8 +245,8 @@ void Microparticles::touch_sides(Microparticle& particle) {
         const Vector3d force = side * normal * Vector3d::Unit(axis);
         particle.force += force;
         particle.torque += to_contact.cross(force);
-        // The other sides of the box only keep things in: no friction.
-        if (has_wall_ && axis == 2 && side > 0)
+        // Sides that are no plates only keep things in: no friction.
+        if (axis == 2 && (side > 0 ? domain.has_wall() : domain.has_top_plate()))
           particle.contacts.push_back({to_contact, sphere.radius, normal});
       }
     }
@@ -348,7 +352,7 @@ void archive_motion(Archive& archive, Microparticle& particle) {
   std::uint64_t contacts = particle.contacts.size();
   archive(contacts);
   if (archive.reading()) {
-    if (contacts > particle.contact_spheres.size())
+    if (contacts > 2 * particle.contact_spheres.size())
       throw InvalidInput("saved state: a microparticle touches the wall too often");
     particle.contacts.resize(contacts);
   }

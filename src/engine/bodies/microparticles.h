@@ -9,7 +9,6 @@
 #include "engine/bodies/rigid_body.h"
 #include "engine/microparticle.h"
 #include "engine/parameters.h"
-#include "engine/walls/plane_wall.h"
 
 namespace dmf::engine {
 
@@ -61,11 +60,11 @@ struct BodyDriftReport {
   std::uint32_t wild = 0;                  ///< id of one that moved too far in this step, or not to a number
 };
 
-/// All microparticles: rigid bodies that liquid and wall push and pull bead by bead, and that touch the wall
-/// and each other (contact.h).
+/// All microparticles: rigid bodies that liquid and plates push and pull bead by bead, and that touch the
+/// plates and each other (contact.h).
 class Microparticles {
  public:
-  Microparticles(const Parameters& parameters, const PlaneWall& wall);
+  explicit Microparticles(const Parameters& parameters);
 
   bool empty() const { return all_.empty(); }
   const std::vector<Microparticle>& all() const { return all_; }
@@ -104,8 +103,6 @@ class Microparticles {
   void touch_each_other();
 
   Parameters parameters_;
-  double wall_plane_;
-  bool has_wall_;
   std::uint32_t next_id_ = 1;
   std::vector<Microparticle> all_;
   BodyBeads beads_;

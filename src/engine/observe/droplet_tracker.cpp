@@ -98,8 +98,8 @@ std::vector<Eigen::Vector2f> convex_outline(const std::vector<Eigen::Vector2d>& 
 
 }  // namespace
 
-DropletTracker::DropletTracker(const Parameters& parameters, double wall_plane)
-    : parameters_(parameters), wall_plane_(wall_plane) {}
+DropletTracker::DropletTracker(const Parameters& parameters)
+    : parameters_(parameters), wall_plane_(parameters.domain.lower.z()) {}
 
 void DropletTracker::update(std::uint64_t step, const Beads& beads,
                             const std::vector<NeighbourBlock>& blocks) {
@@ -251,7 +251,10 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   droplet.velocity = memory.velocity;
   droplet.height = droplet.upper.z() - wall_plane_;
   if (wetting.size() >= 3) droplet.footprint = convex_outline(wetting, droplet.footprint_area);
-  if (droplet.footprint_area > 0) measure_angles(droplet, component, elapsed);
+  // The circle is fitted to a cap. Between two plates there is none: no angle is better than a wrong one.
+  const Domain& domain = parameters_.domain;
+  const bool reaches_top = domain.has_top_plate() && droplet.upper.z() > domain.upper.z() - wetting_height;
+  if (droplet.footprint_area > 0 && !reaches_top) measure_angles(droplet, component, elapsed);
 
   // Reported inside the box, although measured on the unwrapped droplet.
   for (int axis = 0; axis < 3; ++axis)

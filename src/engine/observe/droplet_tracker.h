@@ -24,7 +24,7 @@ class DropletTracker {
  public:
   static constexpr std::size_t fewest_beads = 20;
 
-  DropletTracker(const Parameters& parameters, double wall_plane);
+  explicit DropletTracker(const Parameters& parameters);
 
   /// Needs who is in range now: the density pass must have run on these positions.
   void update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks);
