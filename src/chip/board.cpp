@@ -1,10 +1,20 @@
 #include "chip/board.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <type_traits>
 #include <variant>
 
 namespace dmf::chip {
+
+namespace {
+
+constexpr double kThere = 0.05;  // degrees from its end at which a charging pad has arrived
+
+}  // namespace
 
 Board::Board(std::shared_ptr<const Scene> scene)
     : scene_(std::move(scene)), pads_(scene_->layout.electrodes().size()) {
@@ -13,7 +23,10 @@ Board::Board(std::shared_ptr<const Scene> scene)
 }
 
 void Board::apply(const SetElectrodes& command) {
-  for (Pad& pad : pads_) pad = Pad{};
+  for (Pad& pad : pads_) {
+    pad.on = false;
+    pad.own_voltage.reset();
+  }
   for (const std::uint32_t channel : command.channels) pads_[scene_->layout.index_of(channel)].on = true;
   program_.reset();
   update_angles();
@@ -96,10 +109,67 @@ engine::ContactAngleField Board::field() const {
   return [board = *this](double x, double y) { return board.contact_angle_at({x, y}); };
 }
 
+double Board::target_number(std::size_t index) const {
+  const Electrowetting& law = scene_->electrowetting;
+  return std::min(law.number(voltage(index), rail_.frequency), law.saturation_number());
+}
+
+void Board::set_number(std::size_t index, double number) {
+  const Electrowetting& law = scene_->electrowetting;
+  const double target = target_number(index);
+  const double end = law.contact_angle(voltage(index), rail_.frequency);
+  const double angle = law.contact_angle_of_number(number);
+  const bool there = number == target || std::abs(angle - end) < kThere;
+  pads_[index].number = there ? target : number;
+  pads_[index].angle = there ? end : angle;
+}
+
 void Board::update_angles() {
+  const bool at_once = scene_->electrowetting.charging_time <= 0;
   for (std::size_t index = 0; index < pads_.size(); ++index) {
-    pads_[index].angle = scene_->electrowetting.contact_angle(voltage(index));
+    set_number(index, at_once ? target_number(index) : pads_[index].number);
   }
+}
+
+void Board::charge_until(std::uint64_t step) {
+  assert(step >= charged_step_);
+  const double elapsed = static_cast<double>(step - charged_step_) * scene_->parameters.time_step;
+  charged_step_ = step;
+  if (!charging()) return;
+  const double share = 1 - std::exp(-elapsed / scene_->electrowetting.charging_time);
+  for (std::size_t index = 0; index < pads_.size(); ++index) {
+    const double number = pads_[index].number;
+    set_number(index, number + share * (target_number(index) - number));
+  }
+}
+
+bool Board::charging() const {
+  if (scene_->electrowetting.charging_time <= 0) return false;
+  for (std::size_t index = 0; index < pads_.size(); ++index) {
+    if (pads_[index].number != target_number(index)) return true;
+  }
+  return false;
+}
+
+PadCharge Board::charge() const {
+  PadCharge charge;
+  charge.step = charged_step_;
+  for (const Pad& pad : pads_) charge.numbers.push_back(pad.number);
+  return charge;
+}
+
+void Board::set_charge(const PadCharge& charge) {
+  if (charge.numbers.size() != pads_.size()) {
+    throw engine::InvalidInput(
+        fmt::format("charge: {} numbers, allowed: {}", charge.numbers.size(), pads_.size()));
+  }
+  const double most = scene_->electrowetting.saturation_number();
+  for (const double number : charge.numbers) {
+    if (!(number >= 0 && number <= most))
+      throw engine::InvalidInput(fmt::format("charge: {}, allowed: 0 to {}", number, most));
+  }
+  charged_step_ = charge.step;
+  for (std::size_t index = 0; index < pads_.size(); ++index) set_number(index, charge.numbers[index]);
 }
 
 double Board::program_angle_at(double reduced_x) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,9 +17,15 @@ struct RailState {
   bool enabled = false;
 };
 
+/// How far the pads' electrowetting numbers have come on their way to what the voltages ask for.
+struct PadCharge {
+  std::uint64_t step = 0;       ///< at which they were so
+  std::vector<double> numbers;  ///< by index of the electrode
+};
+
 /// What a controller has set, and what contact angle follows from it where: rail and channels -> voltage of
-/// each pad
-/// -> angle of each pad -> angle at each point of the plate. A plain value: a copy is another board.
+/// each pad -> its charge -> angle of each pad -> angle at each point of the plate. A plain value: a copy is
+/// another board.
 /// Takes commands that were found sound (command_rules.h). Pads are named by their index in
 /// layout().electrodes().
 class Board {
@@ -33,14 +40,23 @@ class Board {
   /// @throws engine::InvalidInput for a command that is none of the above.
   void apply(const Command& command);
 
-  /// Commands that turn a board on which all is off into one like this, in order.
+  /// Commands that turn a board on which all is off into one like this but for charge(), in order.
   std::vector<Command> as_commands() const;
+
+  /// With a charging time a pad's electrowetting number follows its voltage exponentially. Takes all pads on
+  /// to a step, at most this late; a pad whose angle is within 0.05 degrees of its end is there.
+  void charge_until(std::uint64_t step);
+  /// Some pad's angle is not yet what its voltage leads to.
+  bool charging() const;
+  PadCharge charge() const;
+  /// @throws engine::InvalidInput, unchanged, unless there is one number from 0 to saturation for each pad.
+  void set_charge(const PadCharge& charge);
 
   const RailState& rail() const { return rail_; }
   bool is_on(std::size_t index) const { return pads_[index].on; }
   /// V rms on the pad.
   double voltage(std::size_t index) const;
-  /// Degrees, from the pad's voltage or at its centre from the program that overrides it.
+  /// Degrees, from the pad's charge or at its centre from the program that overrides it.
   double contact_angle(std::size_t index) const;
   /// Degrees at a point of the plate, r_c.
   double contact_angle_at(const Vector2d& point) const;
@@ -51,15 +67,21 @@ class Board {
   struct Pad {
     bool on = false;
     std::optional<double> own_voltage;  ///< V rms, drives the pad past the rail
-    double angle = 0;                   ///< degrees, from its voltage
+    double number = 0;                  ///< electrowetting number, up to saturation
+    double angle = 0;                   ///< degrees, from its number
   };
 
+  /// Where the pad's number goes.
+  double target_number(std::size_t index) const;
+  void set_number(std::size_t index, double number);
+  /// After voltages changed.
   void update_angles();
   double program_angle_at(double x) const;
 
   std::shared_ptr<const Scene> scene_;
   RailState rail_;
   std::vector<Pad> pads_;
+  std::uint64_t charged_step_ = 0;         ///< up to which the numbers have followed
   std::optional<SetWettability> program_;  ///< overrides the angles of the voltages
 };
 

@@ -24,7 +24,7 @@ struct SetElectrodes {  ///< these channels on, all others off; every pad is bac
 };
 struct SetHv {           ///< the shared rail
   double voltage = 0;    ///< V rms
-  double frequency = 0;  ///< Hz, [0, 100e3]; 0 is DC. Kept and shown; the physics knows V rms only
+  double frequency = 0;  ///< Hz, [0, 100e3]; 0 is DC. What of the voltage acts, see Electrowetting
   bool enabled = false;
 };
 struct SetElectrodeVoltages {  ///< drives single electrodes past the rail; unlisted unchanged

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -38,6 +39,10 @@ struct Run {
       const engine::ContactAngleCurve& curve, const engine::Execution& execution)
       : simulation(std::make_unique<engine::Simulation>(parameters, curve, execution)), board(scene) {
     show(board);
+    constexpr double kShownInAChargingTime = 10;
+    const double charging_steps = scene->electrowetting.charging_time / parameters.time_step;
+    charging_interval =
+        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(charging_steps / kShownInAChargingTime));
     const double settle_steps = scene->settle_time / parameters.time_step;
     schedule = {&scene->schedule, static_cast<std::uint64_t>(std::llround(settle_steps)), 0};
   }
@@ -63,6 +68,15 @@ struct Run {
       attempt("body_forces", [&] { simulation->set_body_forces(forces); });
   }
 
+  /// Takes charging pads on to this step, now and then: the wall is shown anew some ten times in a charging
+  /// time.
+  void charge_pads() {
+    if (simulation->steps() % charging_interval != 0 || !board.charging()) return;
+    Board next = board;
+    next.charge_until(simulation->steps());
+    show(next);
+  }
+
   /// Makes a board the one that the wall shows, or changes nothing and throws.
   void show(const Board& next) {
     if (simulation->parameters().domain.has_wall()) simulation->set_wettability(next.field());
@@ -71,12 +85,14 @@ struct Run {
 
   std::unique_ptr<engine::Simulation> simulation;
   Board board;
+  std::uint64_t charging_interval = 1;  ///< steps
   Sequence schedule;
   Sequence pattern;
   std::string pattern_name;                ///< of the pattern that was loaded last; empty before the first
   std::uint32_t newest_microparticle = 0;  ///< id of the one that a command added last
   std::vector<CommandRecord> history;
   std::vector<ScheduledReply> scheduled_replies;
+  std::optional<CapacitanceReading> reading;  ///< that nobody has taken yet
   std::string fault;
 };
 
@@ -124,18 +140,43 @@ struct Experiment::State {
   template <typename BoardCommand>
   void change_board(const BoardCommand& command) {
     Board next = run->board;
+    next.charge_until(run->simulation->steps());
     next.apply(command);
     run->show(next);
   }
 
   std::vector<std::uint32_t> channels_on() const;
+  CapacitanceReading sense();
+  /// Keeps a reading when its time has come and somebody wants it.
+  void sense_if_due();
 
   std::shared_ptr<const Scene> scene;
   engine::Execution execution;
   engine::Parameters parameters;
   engine::ContactAngleCurve curve;
   std::unique_ptr<Run> run;
+  std::optional<PadCapacitance> pad_capacitance;  ///< once it was needed
+  bool readings_wanted = false;
 };
+
+// ---- sensing ----
+
+CapacitanceReading Experiment::State::sense() {
+  if (!pad_capacitance) pad_capacitance.emplace(*scene);
+  engine::ObserveRequest request;
+  request.wetted = true;
+  const auto snapshot = run->simulation->observe(request);
+  // Without a plate there are no electrodes either.
+  const engine::WettedArea wetted = snapshot->wetted.value_or(engine::WettedArea{});
+  return read_channels(pad_capacitance->capacitances(wetted), *scene, parameters.seed, snapshot->step);
+}
+
+void Experiment::State::sense_if_due() {
+  if (!readings_wanted) return;
+  const double steps = std::round(scene->sensing.interval / parameters.time_step);
+  const auto interval = static_cast<std::uint64_t>(std::max(1.0, steps));
+  if (run->simulation->steps() % interval == 0) run->reading = sense();
+}
 
 // ---- commands ----
 
@@ -255,6 +296,10 @@ std::string Experiment::State::save() const {
   saved["seed"] = parameters.seed;
   saved["board"] = Json::array();
   for (const Command& command : run->board.as_commands()) saved["board"].push_back(to_json(command));
+  if (run->board.charging()) {
+    const PadCharge charge = run->board.charge();
+    saved["charge"] = {{"step", charge.step}, {"numbers", charge.numbers}};
+  }
   saved["schedule_next"] = run->schedule.next;
   saved["pattern"] = run->pattern_name;
   saved["pattern_start"] = run->pattern.start_step;
@@ -294,6 +339,11 @@ std::unique_ptr<Run> Experiment::State::run_from(const Json& saved,
     if (!wrong.empty()) throw engine::InvalidInput(fmt::format("saved run: {}", fmt::join(wrong, "; ")));
     board.apply(command);
   }
+  if (saved.contains("charge")) {
+    const Json& charge = saved["charge"];
+    board.set_charge(
+        {charge.at("step").get<std::uint64_t>(), charge.at("numbers").get<std::vector<double>>()});
+  }
   loaded->show(board);
   loaded->schedule.next = saved.at("schedule_next").get<std::size_t>();
   loaded->pattern_name = saved.at("pattern").get<std::string>();
@@ -324,6 +374,7 @@ Reply Experiment::apply(const Command& command) {
 
 void Experiment::step() {
   if (!fault().empty()) throw engine::Instability(fault());
+  state_->run->charge_pads();
   state_->play_due(state_->run->schedule);
   state_->play_due(state_->run->pattern);
   try {
@@ -332,6 +383,7 @@ void Experiment::step() {
     state_->run->fault = instability.what();
     throw;
   }
+  state_->sense_if_due();
 }
 
 std::shared_ptr<const engine::Snapshot> Experiment::observe(const engine::ObserveRequest& request) const {
@@ -368,6 +420,14 @@ std::vector<std::uint32_t> Experiment::channels_under(const engine::DropletObser
     channels.push_back(scene().layout.electrodes()[index].channel);
   }
   return channels;
+}
+
+CapacitanceReading Experiment::sense() const { return state_->sense(); }
+
+void Experiment::want_readings(bool wanted) { state_->readings_wanted = wanted; }
+
+std::optional<CapacitanceReading> Experiment::take_reading() {
+  return std::exchange(state_->run->reading, std::nullopt);
 }
 
 double Experiment::commanded_angle(double x, double y) const {

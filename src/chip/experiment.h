@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "chip/board.h"
+#include "chip/capacitance.h"
 #include "chip/command.h"
 #include "chip/scene.h"
 #include "engine/simulation.h"
@@ -56,6 +57,12 @@ class Experiment {
   RailState rail() const;
   /// Channels under a droplet's footprint: those whose pad the wetted area overlaps.
   std::vector<std::uint32_t> channels_under(const engine::DropletObservation& droplet) const;
+  /// What the board senses of all channels at this step: a function of the state, the seed and the step.
+  CapacitanceReading sense() const;
+  /// Whether step() keeps a reading at every multiple of the sensing interval. Changes nothing else.
+  void want_readings(bool wanted);
+  /// The newest reading since the last call.
+  std::optional<CapacitanceReading> take_reading();
   /// Contact angle that is commanded at a point (r_c), degrees.
   double commanded_angle(double x, double y) const;
 

@@ -46,6 +46,8 @@ Polygon counter_clockwise(Polygon polygon) {
   return polygon;
 }
 
+double area(const Polygon& polygon) { return geometry::area(ring(polygon)); }
+
 Eigen::Vector2d centroid(const Polygon& polygon) {
   Point centre(0, 0);
   geometry::centroid(ring(polygon), centre);

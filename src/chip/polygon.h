@@ -14,6 +14,8 @@ using Polygon = std::vector<Eigen::Vector2d>;
 std::string polygon_fault(const Polygon& polygon);
 /// The same corners counter-clockwise.
 Polygon counter_clockwise(Polygon polygon);
+/// Of a sound polygon, counter-clockwise.
+double area(const Polygon& polygon);
 Eigen::Vector2d centroid(const Polygon& polygon);
 Eigen::AlignedBox2d bounding_box(const Polygon& polygon);
 /// Area that two sound polygons, both counter-clockwise, share.

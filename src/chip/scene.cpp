@@ -124,6 +124,10 @@ Scene read_scene(YamlReader root, const std::string& source) {
 
 }  // namespace
 
+double surface_tension(const Scene& scene) {
+  return scene.parameters.liquid.surface_tension * scene.units.surface_tension_N_per_m();
+}
+
 engine::ContactAngleCurve load_curve(const Scene& scene) {
   if (scene.calibration_file.empty()) return engine::ContactAngleCurve::lan2016();
   return engine::ContactAngleCurve::load(scene.calibration_file);

@@ -15,6 +15,14 @@
 
 namespace dmf::chip {
 
+/// How the board senses the capacitance of its channels.
+struct Sensing {
+  double interval = 1;             ///< between two readings, tau; > 0
+  double noise = 0;                ///< standard deviation of a reading, F; >= 0
+  double offset = 0;               ///< in every reading, F: stray capacitance of traces and switches; >= 0
+  double filler_permittivity = 1;  ///< relative, of what surrounds the liquid between two plates; >= 1
+};
+
 /// A command of a scene's own schedule or pattern.
 struct ScheduledCommand {
   double time = 0;  ///< tau after the end of settle_time, or after the pattern was loaded
@@ -30,6 +38,7 @@ struct Scene {
   engine::Units units;
   std::string calibration_file;  ///< resolved path; empty means Lan's own fit
   Electrowetting electrowetting;
+  Sensing sensing;
   Layout layout;                          ///< inside the domain
   std::optional<SetWettability> program;  ///< shown from the start, as if commanded before the first step
   double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
@@ -41,6 +50,9 @@ struct Scene {
   std::vector<ScheduledCommand> schedule;                      ///< by rising time
   std::map<std::string, std::vector<ScheduledCommand>> patterns;  ///< for ~load_pattern, by rising time
 };
+
+/// Of the scene's liquid, N/m.
+double surface_tension(const Scene& scene);
 
 /// The relation of wall attraction and contact angle that the scene names.
 /// @throws engine::InvalidInput when its file can't be read.

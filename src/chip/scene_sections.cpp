@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "chip/capacitance.h"
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
 #include "chip/configuration.h"
@@ -27,6 +28,11 @@ constexpr const char* kDefaultMicroparticleCalibration = "microparticle";
 
 constexpr std::uint64_t kMaxPerSide = 1000;       // columns, rows
 constexpr std::uint64_t kMaxChannel = 1'000'000;  // of a grid's first electrode and of a polygon
+constexpr double kMaxPermittivity = 1e5;
+
+// Of the capacitance of a pad that liquid covers: what the sensing of a good board is off by.
+constexpr double kNoiseShare = 0.005;
+constexpr double kOffsetShare = 0.05;
 
 // The engine checks its own ranges (engine::violations), so that each stands once; here any number goes.
 constexpr std::uint64_t kAnyInteger = std::numeric_limits<std::uint32_t>::max();
@@ -114,15 +120,66 @@ Electrode read_polygon(const YamlReader& section) {
   return electrode;
 }
 
-void read_electrowetting(const YamlReader& chip, Electrowetting& law) {
-  if (const auto section = chip.optional_mapping("electrowetting")) {
+/// The insulating layer, when the law is to follow from it instead of from a reference point.
+std::optional<Dielectric> read_dielectric(const YamlReader& electrowetting, const engine::Units& units) {
+  const auto section = electrowetting.optional_mapping("dielectric");
+  if (!section) return std::nullopt;
+  for (const char* key : {"reference_voltage", "reference_angle"}) {
+    if (electrowetting.has(key))
+      electrowetting.report(key, "given together with dielectric, allowed: one of both");
+  }
+  Dielectric dielectric;
+  dielectric.relative_permittivity = section->number("relative_permittivity", Range{1, kMaxPermittivity});
+  dielectric.thickness = section->quantity("thickness", Dimension::length, Range::above(0)) * units.length_m;
+  return dielectric;
+}
+
+void read_electrowetting(const YamlReader& chip, const Scene& scene, Electrowetting& law) {
+  const auto section = chip.optional_mapping("electrowetting");
+  std::optional<Dielectric> dielectric;
+  if (section) {
     law.reference_voltage =
         section->quantity("reference_voltage", Dimension::voltage, {}, law.reference_voltage);
     law.reference_angle = section->quantity("reference_angle", Dimension::angle, {}, law.reference_angle);
     law.saturation_angle = section->quantity("saturation_angle", Dimension::angle, {}, law.saturation_angle);
     law.max_voltage = section->quantity("max_voltage", Dimension::voltage, {}, law.max_voltage);
+    law.threshold_voltage =
+        section->quantity("threshold_voltage", Dimension::voltage, {}, law.threshold_voltage);
+    law.cutoff_frequency =
+        section->quantity("cutoff_frequency", Dimension::frequency, {}, law.cutoff_frequency);
+    law.breakdown_voltage =
+        section->quantity("breakdown_voltage", Dimension::voltage, {}, law.breakdown_voltage);
+    law.charging_time = section->quantity("charging_time", Dimension::time, {}, law.charging_time);
+    dielectric = read_dielectric(*section, scene.units);
   }
-  for (const std::string& violation : violations(law)) chip.report("electrowetting", violation);
+  if (dielectric) {
+    // Until its own is known: one that has no part in what the other members are held to.
+    law.reference_voltage = law.max_voltage;
+    law.reference_angle = law.saturation_angle;
+  }
+  const std::vector<std::string> found = violations(law);
+  for (const std::string& violation : found) chip.report("electrowetting", violation);
+  if (dielectric && found.empty() && dielectric->thickness > 0) {
+    law = with_dielectric(law, *dielectric, surface_tension(scene));
+  }
+}
+
+/// `sensing`: without words of its own, noise and offset are those of a board of this size of pads.
+void read_sensing(const YamlReader& chip, Scene& scene) {
+  double pads = 0;  // r_c^2
+  for (const Electrode& electrode : scene.layout.electrodes()) pads += area(electrode.outline);
+  const double full_pad = liquid_capacitance(scene) * pads * scene.units.area_m2() /
+                          static_cast<double>(scene.layout.electrodes().size());
+  Sensing& sensing = scene.sensing;
+  sensing.noise = kNoiseShare * full_pad;
+  sensing.offset = kOffsetShare * full_pad;
+  const auto section = chip.optional_mapping("sensing");
+  if (!section) return;
+  sensing.interval = section->quantity("interval", Dimension::time, Range::above(0), sensing.interval);
+  sensing.noise = section->quantity("noise", Dimension::capacitance, Range::at_least(0), sensing.noise);
+  sensing.offset = section->quantity("offset", Dimension::capacitance, Range::at_least(0), sensing.offset);
+  sensing.filler_permittivity =
+      section->number("filler_permittivity", Range{1, kMaxPermittivity}, sensing.filler_permittivity);
 }
 
 /// From the surface of one droplet to that of another, as they are placed, r_c.
@@ -243,7 +300,7 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   if (!chip) return true;
   const Domain& domain = scene.parameters.domain;
   if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
-  read_electrowetting(*chip, scene.electrowetting);
+  read_electrowetting(*chip, scene, scene.electrowetting);
 
   const double gap = chip->quantity("gap", Dimension::length, Range::above(0));
   if (gap <= 0) return false;
@@ -259,6 +316,7 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   if (root.failed()) return false;
   if (!attempt(*chip, "", [&] { scene.layout = Layout(std::move(electrodes), gap); })) return false;
   check_on_plate(*chip, scene.layout, domain);
+  read_sensing(*chip, scene);
   return true;
 }
 

@@ -12,10 +12,11 @@ namespace dmf::engine {
 /// | wall       | zeta_ij of the random force, liquid-wall    | bead id, wall bead index            |
 /// | body       | zeta_ij of the random force, liquid-body     | bead id, index of the body's bead   |
 /// | velocity   | thermal velocities of a newly placed bead   | bead id, component                  |
+/// | sensing    | noise of a reading of the capacitance       | channel                             |
 ///
 /// A wall or body pair mixes the liquid bead's key of the pair stream with a fixed key of the other bead.
 /// The pair stream costs one hash a bead and step (`bead_key`) plus one hash a pair (`mix` in noise-inl.h).
-enum class Stream : std::uint32_t { pair = 1, velocity = 2 };
+enum class Stream : std::uint32_t { pair = 1, velocity = 2, sensing = 3 };
 
 /// The two words that make a step's keys: from (seed, step, stream).
 struct StepKey {
@@ -50,6 +51,18 @@ inline std::uint32_t mix32(std::uint32_t x) {
 /// Key of one bead in one step; the pair noise mixes two of them.
 inline std::uint32_t bead_key(StepKey key, std::uint32_t id) {
   return mix32(mix32(id ^ key.first) + key.second);
+}
+
+/// A number of zero mean and unit variance: twelve uniform ones added up (Irwin and Hall), which is Gaussian
+/// enough up to six deviations. Needs no logarithm, whose last bit depends on the processor.
+/// @param component  up to 3 independent numbers an id: 0, 1, 2.
+inline double gaussian_noise(StepKey key, std::uint32_t id, std::uint32_t component) {
+  double sum = -6.0;
+  for (std::uint32_t word = 0; word < 6; ++word) {
+    const std::uint32_t bits = bead_key(key, id * 18 + 6 * component + word);
+    sum += ((bits & 0xffffu) + 0.5) / 65536.0 + ((bits >> 16) + 0.5) / 65536.0;
+  }
+  return sum;
 }
 
 }  // namespace dmf::engine

@@ -125,17 +125,6 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   return sites;
 }
 
-/// A thermal velocity component of unit variance: twelve uniform numbers added up (Irwin and Hall), which is
-/// Gaussian enough for a start. Needs no logarithm, whose last bit depends on the processor.
-double thermal(StepKey key, std::uint32_t id, std::uint32_t component) {
-  double sum = -6.0;
-  for (std::uint32_t word = 0; word < 6; ++word) {
-    const std::uint32_t bits = bead_key(key, id * 18 + 6 * component + word);
-    sum += ((bits & 0xffffu) + 0.5) / 65536.0 + ((bits >> 16) + 0.5) / 65536.0;
-  }
-  return sum;
-}
-
 }  // namespace
 
 double liquid_height(const Parameters& parameters) {
@@ -193,7 +182,8 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const 
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const std::uint32_t id = next_id + static_cast<std::uint32_t>(k);
-    velocities.emplace_back(thermal(key, id, 0), thermal(key, id, 1), thermal(key, id, 2));
+    velocities.emplace_back(gaussian_noise(key, id, 0), gaussian_noise(key, id, 1),
+                            gaussian_noise(key, id, 2));
     mean += velocities.back() / static_cast<double>(sites.size());
   }
   beads.reserve_more(sites.size());

@@ -24,13 +24,15 @@ enum class Dimension {
   surface_tension,
   mass,
   acceleration,
-  force
+  force,
+  capacitance,
+  current
 };
 
 /// A number as it was written, before the scene's units are applied.
 struct WrittenQuantity {
   double value;  ///< native when `bare`, else in the base unit: m, s, m^3, degrees, V, Hz, kg/m^3, N/m, kg,
-                 ///< m/s^2, N
+                 ///< m/s^2, N, F, A
   bool bare;     ///< written without a unit
 };
 
@@ -77,6 +79,16 @@ inline constexpr std::array kUnitNames{
     UnitName{"uN", Dimension::force, 1e-6},
     UnitName{"nN", Dimension::force, 1e-9},
     UnitName{"pN", Dimension::force, 1e-12},
+    UnitName{"F", Dimension::capacitance, 1},
+    UnitName{"uF", Dimension::capacitance, 1e-6},
+    UnitName{"nF", Dimension::capacitance, 1e-9},
+    UnitName{"pF", Dimension::capacitance, 1e-12},
+    UnitName{"fF", Dimension::capacitance, 1e-15},
+    UnitName{"aF", Dimension::capacitance, 1e-18},
+    UnitName{"A", Dimension::current, 1},
+    UnitName{"mA", Dimension::current, 1e-3},
+    UnitName{"uA", Dimension::current, 1e-6},
+    UnitName{"nA", Dimension::current, 1e-9},
 };
 
 }  // namespace quantity_detail
@@ -104,8 +116,9 @@ inline std::string unit_names(Dimension dimension) {
 
 /// What a bare number of this dimension is measured in.
 inline std::string_view native_unit(Dimension dimension) {
-  constexpr std::array<std::string_view, 12> names{"",   "r_c",    "tau", "r_c^3", "degrees",   "V",
-                                                   "Hz", "kg/m^3", "N/m", "beads", "r_c/tau^2", "k_BT/r_c"};
+  constexpr std::array<std::string_view, 14> names{"",          "r_c",      "tau",    "r_c^3", "degrees",
+                                                   "V",         "Hz",       "kg/m^3", "N/m",   "beads",
+                                                   "r_c/tau^2", "k_BT/r_c", "F",      "A"};
   return names[static_cast<std::size_t>(dimension)];
 }
 

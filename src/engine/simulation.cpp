@@ -16,6 +16,7 @@
 #include "engine/observe/droplet_tracker.h"
 #include "engine/observe/state_hash.h"
 #include "engine/observe/virial.h"
+#include "engine/observe/wetted_area.h"
 #include "engine/pairs.h"
 #include "engine/placement.h"
 #include "engine/thermostat.h"
@@ -294,6 +295,8 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
     snapshot->virial = virial.total;
   }
   if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
+  if (request.wetted && s.parameters.domain.has_wall())
+    snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);
   if (request.beads) {
     std::vector<std::uint32_t> index_of_id(s.next_bead_id, 0xffffffffu);
     for (std::uint32_t i = 0; i < s.beads.size(); ++i) index_of_id[s.beads.id[i]] = i;

@@ -283,6 +283,45 @@ TEST(Scene, ElectrowettingAndLayoutAreCheckedWhereTheyStand) {
                     "s.yaml:5: chip.electrowetting: reference_angle: 10, allowed"));
 }
 
+std::string with_electrowetting(const std::string& keys) {
+  std::string text = kChip;
+  const std::string old = "reference_angle: 60, saturation_angle: 55";
+  return text.replace(text.find(old), old.size(), keys);
+}
+
+TEST(Scene, ADielectricStandsForTheReferencePoint) {
+  const Scene scene = parse_scene(
+      with_electrowetting("dielectric: {relative_permittivity: 3, thickness: 1 um}, saturation_angle: 60, "
+                          "threshold_voltage: 10 V, cutoff_frequency: 10 kHz, breakdown_voltage: 75, "
+                          "charging_time: 1 us"),
+      "scene.yaml");
+  const Electrowetting& law = scene.electrowetting;
+  // eta = 8.8541878e-12 * 3 * (50^2 - 10^2) / (2 * 0.072 * 1e-6) = 0.442709 again.
+  EXPECT_NEAR(law.number(50), 0.442709, 1e-6);
+  EXPECT_NEAR(law.dielectric_capacitance(surface_tension(scene)), 8.8541878e-12 * 3 / 1e-6, 1e-10);
+  EXPECT_EQ(law.cutoff_frequency, 1e4);
+  EXPECT_EQ(law.breakdown_voltage, 75);
+  EXPECT_NEAR(law.charging_time * scene.units.time_s, 1e-6, 1e-18);
+}
+
+TEST(Scene, WhatIsWrongWithElectrowettingIsTold) {
+  const auto refused_law = [](const std::string& keys) {
+    return refusal([&] { parse_scene(with_electrowetting(keys), "scene.yaml"); });
+  };
+  const std::string both = refused_law(
+      "reference_voltage: 60, dielectric: {relative_permittivity: 3, thickness: 1 um}, saturation_angle: 60");
+  EXPECT_TRUE(holds(both, "chip.electrowetting.reference_voltage: given together with dielectric"));
+  const std::string dielectric = refused_law("dielectric: {relative_permittivity: 0.5, thickness: 0}");
+  EXPECT_TRUE(holds(dielectric, "relative_permittivity: 0.5, allowed: [1, 100000]"));
+  EXPECT_TRUE(holds(dielectric, "thickness: 0, allowed: more than 0 r_c"));
+  EXPECT_TRUE(holds(refused_law("dielectric: {}"), "thickness: missing"));
+  EXPECT_TRUE(holds(refused_law("reference_angle: 60, saturation_angle: 55, threshold_voltage: 70"),
+                    "threshold_voltage: 70, allowed: [0, 63) V"));
+  EXPECT_TRUE(holds(refused_law("saturation_angle: 60, threshold_voltage: 80, "
+                                "dielectric: {relative_permittivity: 3, thickness: 1 um}"),
+                    "threshold_voltage: 80, allowed: [0, 80) V"));
+}
+
 TEST(Scene, ScheduleIsPlayedByRisingTime) {
   const Scene scene = parse(
       "schedule:\n  - {at: 5, set_electrodes: {channels: [1]}}\n  - {at: 2, set_hv: {voltage: 10}}\n"

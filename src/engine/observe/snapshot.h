@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/microparticle.h"
+#include "engine/observe/wetted_area.h"
 
 namespace dmf::engine {
 
@@ -44,6 +45,7 @@ struct ObserveRequest {
   bool beads = false;   ///< copy positions, ids and droplet of every moving bead
   bool hash = false;    ///< hash the complete state
   bool virial = false;  ///< stress of the conservative forces; with `beads` also bead by bead
+  bool wetted = false;  ///< which cells of the plate liquid covers
 };
 
 /// The state of a run between two steps, as plain values that no later step changes. Reduced units.
@@ -59,6 +61,7 @@ struct Snapshot {
   std::vector<MicroparticleObservation> microparticles;  ///< by id
   std::optional<std::uint64_t> state_hash;               ///< when asked for
   std::optional<Eigen::Matrix3d> virial;  ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
+  std::optional<WettedArea> wetted;       ///< of the plate, when asked for and there is one
   // When beads are asked for, equally long, ordered by bead id:
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> velocities;
