@@ -33,7 +33,7 @@ void Board::apply(const SetElectrodes& command) {
 }
 
 void Board::apply(const SetHv& command) {
-  rail_ = {command.voltage, command.frequency, command.enabled};
+  rail_ = {command.voltage, command.frequency, command.enabled, command.enabled ? "" : rail_.halted};
   program_.reset();
   update_angles();
 }
@@ -47,6 +47,43 @@ void Board::apply(const SetElectrodeVoltages& command) {
 }
 
 void Board::apply(const SetWettability& command) { program_ = command; }
+
+void Board::apply(const InjectFault& command) {
+  if (command.all) {
+    disconnected_ = false;
+    for (Pad& pad : pads_) pad.faults = {};
+  } else if (command.kind == fault::kDisconnected) {
+    disconnected_ = true;
+  } else {
+    PadFaults& faults = pads_[scene_->layout.index_of(command.channel)].faults;
+    if (command.kind == fault::kClear) faults = {};
+    if (command.kind == fault::kStuckOn) faults.stuck_on = true;
+    if (command.kind == fault::kStuckOff) faults.stuck_off = true;
+    if (command.kind == fault::kShort) faults.shorted = true;
+    if (command.kind == fault::kWeak) faults.strength = command.strength;
+  }
+  update_angles();
+}
+
+void Board::apply(const SetDisabledChannels& command) {
+  for (Pad& pad : pads_) {
+    // Who frees a channel does not switch it on.
+    if (pad.disabled) {
+      pad.on = false;
+      pad.own_voltage.reset();
+    }
+    pad.disabled = false;
+  }
+  for (const std::uint32_t channel : command.channels)
+    pads_[scene_->layout.index_of(channel)].disabled = true;
+  update_angles();
+}
+
+void Board::apply(const Halt& command) {
+  rail_.enabled = false;
+  rail_.halted = command.reason.empty() ? "it was commanded" : command.reason;
+  apply(SetElectrodes{});
+}
 
 void Board::apply(const Command& command) {
   const auto pass_on = [this](const auto& given) {
@@ -67,6 +104,7 @@ void Board::apply(const Command& command) {
 std::vector<Command> Board::as_commands() const {
   SetElectrodes on;
   SetElectrodeVoltages driven;
+  SetDisabledChannels disabled;
   for (std::size_t index = 0; index < pads_.size(); ++index) {
     const std::uint32_t channel = scene_->layout.electrodes()[index].channel;
     if (pads_[index].on) on.channels.push_back(channel);
@@ -74,15 +112,40 @@ std::vector<Command> Board::as_commands() const {
     driven.channels.push_back(channel);
     driven.voltages.push_back(*pads_[index].own_voltage);
   }
-  std::vector<Command> commands{SetHv{rail_.voltage, rail_.frequency, rail_.enabled}, on};
+  std::vector<Command> commands{SetHv{rail_.voltage, rail_.frequency, rail_.enabled}};
+  if (!rail_.halted.empty()) commands.push_back(Halt{rail_.halted});
+  if (disconnected_) commands.push_back(InjectFault{fault::kDisconnected});
+  for (std::size_t index = 0; index < pads_.size(); ++index) {
+    const std::uint32_t channel = scene_->layout.electrodes()[index].channel;
+    const PadFaults& faults = pads_[index].faults;
+    if (faults.stuck_on) commands.push_back(InjectFault{fault::kStuckOn, channel});
+    if (faults.stuck_off) commands.push_back(InjectFault{fault::kStuckOff, channel});
+    if (faults.shorted) commands.push_back(InjectFault{fault::kShort, channel});
+    if (faults.strength < 1) commands.push_back(InjectFault{fault::kWeak, channel, faults.strength});
+    if (pads_[index].disabled) disabled.channels.push_back(channel);
+  }
+  if (!disabled.channels.empty()) commands.push_back(disabled);
+  commands.push_back(on);
   if (!driven.channels.empty()) commands.push_back(driven);
   if (program_) commands.push_back(*program_);
   return commands;
 }
 
-double Board::voltage(std::size_t index) const {
+double Board::commanded_voltage(std::size_t index) const {
   const Pad& pad = pads_[index];
   return pad.own_voltage.value_or(rail_.enabled && pad.on ? rail_.voltage : 0.0);
+}
+
+double Board::voltage(std::size_t index) const {
+  const Pad& pad = pads_[index];
+  if (disconnected_ || pad.disabled || pad.faults.stuck_off) return 0;
+  const bool from_rail = pad.faults.stuck_on && rail_.enabled;
+  return pad.faults.strength * (from_rail ? rail_.voltage : commanded_voltage(index));
+}
+
+double Board::sensed_share(std::size_t index) const {
+  const PadFaults& faults = pads_[index].faults;
+  return disconnected_ || faults.stuck_off ? 0 : faults.strength;
 }
 
 double Board::contact_angle(std::size_t index) const {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "chip/command.h"
@@ -15,6 +16,15 @@ struct RailState {
   double voltage = 0;    ///< V rms asked for
   double frequency = 0;  ///< Hz
   bool enabled = false;
+  std::string halted;  ///< why it was switched off and stays so until it is enabled again; empty: it was not
+};
+
+/// What is wrong with a pad, besides a board that is disconnected.
+struct PadFaults {
+  bool stuck_on = false;
+  bool stuck_off = false;
+  bool shorted = false;
+  double strength = 1;  ///< of its voltage
 };
 
 /// How far the pads' electrowetting numbers have come on their way to what the voltages ask for.
@@ -37,6 +47,9 @@ class Board {
   void apply(const SetHv& command);
   void apply(const SetElectrodeVoltages& command);
   void apply(const SetWettability& command);
+  void apply(const InjectFault& command);
+  void apply(const SetDisabledChannels& command);
+  void apply(const Halt& command);
   /// @throws engine::InvalidInput for a command that is none of the above.
   void apply(const Command& command);
 
@@ -53,9 +66,21 @@ class Board {
   void set_charge(const PadCharge& charge);
 
   const RailState& rail() const { return rail_; }
-  bool is_on(std::size_t index) const { return pads_[index].on; }
-  /// V rms on the pad.
+  /// Switched on by SetElectrodes, and not disabled.
+  bool is_on(std::size_t index) const { return pads_[index].on && !pads_[index].disabled; }
+  bool is_disabled(std::size_t index) const { return pads_[index].disabled; }
+  /// On, or driven past the rail: somebody wants a voltage on this pad, whether it has one or not.
+  bool is_wanted(std::size_t index) const { return pads_[index].on || pads_[index].own_voltage > 0.0; }
+  const PadFaults& faults(std::size_t index) const { return pads_[index].faults; }
+  bool disconnected() const { return disconnected_; }
+  /// V rms that a sound pad would have.
+  double commanded_voltage(std::size_t index) const;
+  /// V rms on the pad: none when its channel is disabled or stuck off or the board disconnected; the rail's
+  /// when it is stuck on and the rail enabled; all of it times the strength of a weak one. A disabled channel
+  /// is cut off the rail, so that it has none either when it is stuck on.
   double voltage(std::size_t index) const;
+  /// What of its capacitance a channel senses: it is read by the charge that its own voltage moves.
+  double sensed_share(std::size_t index) const;
   /// Degrees, from the pad's charge or at its centre from the program that overrides it.
   double contact_angle(std::size_t index) const;
   /// Degrees at a point of the plate, r_c.
@@ -66,9 +91,11 @@ class Board {
  private:
   struct Pad {
     bool on = false;
+    bool disabled = false;
     std::optional<double> own_voltage;  ///< V rms, drives the pad past the rail
-    double number = 0;                  ///< electrowetting number, up to saturation
-    double angle = 0;                   ///< degrees, from its number
+    PadFaults faults;
+    double number = 0;  ///< electrowetting number, up to saturation
+    double angle = 0;   ///< degrees, from its number
   };
 
   /// Where the pad's number goes.
@@ -80,6 +107,7 @@ class Board {
 
   std::shared_ptr<const Scene> scene_;
   RailState rail_;
+  bool disconnected_ = false;
   std::vector<Pad> pads_;
   std::uint64_t charged_step_ = 0;         ///< up to which the numbers have followed
   std::optional<SetWettability> program_;  ///< overrides the angles of the voltages

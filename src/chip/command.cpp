@@ -18,6 +18,9 @@ struct NameOf {
   const char* operator()(const AddMicroparticle&) const { return "add_microparticle"; }
   const char* operator()(const Remove&) const { return "remove"; }
   const char* operator()(const SetBodyForces&) const { return "set_body_forces"; }
+  const char* operator()(const InjectFault&) const { return "inject_fault"; }
+  const char* operator()(const SetDisabledChannels&) const { return "set_disabled_channels"; }
+  const char* operator()(const Halt&) const { return "halt"; }
   const char* operator()(const Reset&) const { return "reset"; }
 };
 
@@ -80,10 +83,28 @@ struct Write {
     json["gravity"] = command.gravity;
     json["magnetic"] = command.magnetic;
   }
+  void operator()(const InjectFault& command) const {
+    json["kind"] = command.kind;
+    if (has_channel(command)) json["channel"] = command.channel;
+    if (command.kind == fault::kWeak) json["strength"] = command.strength;
+    if (command.all) json["all"] = true;
+  }
+  void operator()(const SetDisabledChannels& command) const { json["channels"] = command.channels; }
+  void operator()(const Halt& command) const {
+    if (!command.reason.empty()) json["reason"] = command.reason;
+  }
   void operator()(const Reset&) const {}
 };
 
 }  // namespace
+
+const std::vector<std::string>& fault_kinds() {
+  static const std::vector<std::string> kinds{fault::kStuckOn, fault::kStuckOff,     fault::kShort,
+                                              fault::kWeak,    fault::kDisconnected, fault::kClear};
+  return kinds;
+}
+
+bool has_channel(const InjectFault& command) { return command.kind != fault::kDisconnected && !command.all; }
 
 std::string name_of(const Command& command) { return std::visit(NameOf{}, command); }
 

@@ -16,8 +16,9 @@ namespace dmf::chip {
 /// can be applied again.
 ///
 /// The voltage of a pad is its own one when SetElectrodeVoltages gave it one, else the rail's when its
-/// channel is on and the rail is enabled, else 0. SetWettability overrides the angles that follow from the
-/// voltages until the next SetElectrodes, SetHv or SetElectrodeVoltages, whoever gives it.
+/// channel is on and the rail is enabled, else 0; disabled channels and faults come on top (Board::voltage).
+/// SetWettability overrides the angles that follow from the voltages until the next SetElectrodes, SetHv,
+/// SetElectrodeVoltages or Halt, whoever gives it.
 
 struct SetElectrodes {  ///< these channels on, all others off; every pad is back on the rail
   std::vector<std::uint32_t> channels;
@@ -67,10 +68,37 @@ struct SetBodyForces {               ///< forces that act from afar, in place of
   std::array<double, 3> gravity{};   ///< of all liquid and microparticles, m/s^2
   std::array<double, 3> magnetic{};  ///< on each magnetic microparticle, N
 };
+struct InjectFault {          ///< makes an electrode or the board faulty, or sound again; faults add up
+  std::string kind;           ///< one of fault_kinds()
+  std::uint32_t channel = 0;  ///< means nothing with `disconnected` and with `all`
+  double strength = 1;        ///< of `weak`: what of its voltage the pad has, [0, 1]
+  bool all = false;           ///< with `clear`: every fault of the board
+};
+struct SetDisabledChannels {  ///< these stay off whatever is commanded, all others are free
+  std::vector<std::uint32_t> channels;
+};
+struct Halt {          ///< the rail off at once and all channels off, until SetHv enables it again
+  std::string reason;  ///< empty: it was commanded
+};
 struct Reset {};  ///< the scene from its start
 
-using Command = std::variant<SetElectrodes, SetHv, SetElectrodeVoltages, SetWettability, LoadPattern,
-                             DispenseDroplet, AddMicroparticle, Remove, SetBodyForces, Reset>;
+/// What InjectFault knows: a pad that has the rail's voltage whenever the rail is enabled, one that never has
+/// any, one that leaks to ground, one with a part of its voltage, a board that is unplugged, and none of it.
+namespace fault {
+constexpr const char* kStuckOn = "stuck_on";
+constexpr const char* kStuckOff = "stuck_off";
+constexpr const char* kShort = "short";
+constexpr const char* kWeak = "weak";
+constexpr const char* kDisconnected = "disconnected";
+constexpr const char* kClear = "clear";
+}  // namespace fault
+const std::vector<std::string>& fault_kinds();
+/// The fault is one of a channel.
+bool has_channel(const InjectFault& command);
+
+using Command =
+    std::variant<SetElectrodes, SetHv, SetElectrodeVoltages, SetWettability, LoadPattern, DispenseDroplet,
+                 AddMicroparticle, Remove, SetBodyForces, InjectFault, SetDisabledChannels, Halt, Reset>;
 
 /// "set_electrodes", "set_hv", ...: the name of the service that gives this command.
 std::string name_of(const Command& command);
@@ -83,10 +111,11 @@ Command command_from_json(const std::string& json);
 /// What became of a command.
 struct Reply {
   bool success = false;
-  std::string message;                          ///< what was done, or what was wrong and what is allowed
-  std::uint64_t step = 0;                       ///< at which it took effect
-  std::vector<std::uint32_t> applied_channels;  ///< channels that are on now (set_electrodes)
-  std::uint32_t microparticle = 0;              ///< id of the new one (add_microparticle), else 0
+  std::string message;                           ///< what was done, or what was wrong and what is allowed
+  std::uint64_t step = 0;                        ///< at which it took effect
+  std::vector<std::uint32_t> applied_channels;   ///< channels that are on now (set_electrodes)
+  std::vector<std::uint32_t> disabled_channels;  ///< channels that are disabled now (set_disabled_channels)
+  std::uint32_t microparticle = 0;               ///< id of the new one (add_microparticle), else 0
 };
 
 /// An accepted command with the step before which it took effect.

@@ -110,6 +110,24 @@ Command read_set_body_forces(const YamlReader& reader, const Units& units) {
   return SetBodyForces{{gravity.x(), gravity.y(), gravity.z()}, {magnetic.x(), magnetic.y(), magnetic.z()}};
 }
 
+Command read_inject_fault(const YamlReader& reader, const Units&) {
+  InjectFault command;
+  command.kind = reader.choice("kind", fault_kinds());
+  if (command.kind == fault::kClear) command.all = reader.boolean("all", false);
+  if (has_channel(command)) {
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    command.channel = static_cast<std::uint32_t>(reader.integer("channel", 0, most));
+  }
+  if (command.kind == fault::kWeak) command.strength = reader.number("strength", {});
+  return command;
+}
+
+Command read_set_disabled_channels(const YamlReader& reader, const Units&) {
+  return SetDisabledChannels{read_channels(reader)};
+}
+
+Command read_halt(const YamlReader& reader, const Units&) { return Halt{reader.text("reason", "")}; }
+
 Command read_reset(const YamlReader&, const Units&) { return Reset{}; }
 
 using Read = std::function<Command(const YamlReader&, const Units&)>;
@@ -125,6 +143,9 @@ const std::vector<std::pair<std::string, Read>>& readers() {
       {name_of(AddMicroparticle{}), read_add_microparticle},
       {name_of(Remove{}), read_remove},
       {name_of(SetBodyForces{}), read_set_body_forces},
+      {name_of(InjectFault{}), read_inject_fault},
+      {name_of(SetDisabledChannels{}), read_set_disabled_channels},
+      {name_of(Halt{}), read_halt},
       {name_of(Reset{}), read_reset}};
   return table;
 }

@@ -127,6 +127,26 @@ class Rules {
     check_finite("magnetic force's z", command.magnetic[2], "N");
   }
 
+  void operator()(const InjectFault& command) {
+    const std::vector<std::string>& kinds = fault_kinds();
+    if (std::find(kinds.begin(), kinds.end(), command.kind) == kinds.end()) {
+      note("kind `{}`: allowed {}", command.kind, fmt::join(kinds, ", "));
+      return;
+    }
+    if (command.all && command.kind != fault::kClear) {
+      note("all with kind {}: allowed with clear", command.kind);
+      return;
+    }
+    if (has_channel(command)) check_channels({command.channel});
+    if (command.kind == fault::kWeak && !(command.strength >= 0 && command.strength <= 1)) {
+      note("strength {}: allowed 0 to 1", command.strength);
+    }
+  }
+
+  void operator()(const SetDisabledChannels& command) { check_channels(command.channels); }
+
+  void operator()(const Halt&) {}
+
   void operator()(const Reset&) {}
 
   std::vector<std::string> found() && { return std::move(found_); }

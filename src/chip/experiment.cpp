@@ -8,95 +8,12 @@
 #include <utility>
 
 #include "chip/command_rules.h"
+#include "chip/rail_protection.h"
+#include "chip/run.h"
 
 namespace dmf::chip {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
-
-/// A timed list of commands that is being played.
-struct Sequence {
-  const std::vector<ScheduledCommand>* commands = nullptr;  ///< null: nothing is played
-  std::uint64_t start_step = 0;
-  std::size_t next = 0;
-
-  /// The next command if its time has come.
-  const Command* take_due(std::uint64_t step, double time_step) {
-    if (!commands || next >= commands->size()) return nullptr;
-    const ScheduledCommand& candidate = (*commands)[next];
-    if (step < start_step + static_cast<std::uint64_t>(std::llround(candidate.time / time_step)))
-      return nullptr;
-    ++next;
-    return &candidate.command;
-  }
-};
-
-/// Everything that a reset starts anew.
-struct Run {
-  /// A chip without liquid.
-  Run(const std::shared_ptr<const Scene>& scene, const engine::Parameters& parameters,
-      const engine::ContactAngleCurve& curve, const engine::Execution& execution)
-      : simulation(std::make_unique<engine::Simulation>(parameters, curve, execution)), board(scene) {
-    show(board);
-    constexpr double kShownInAChargingTime = 10;
-    const double charging_steps = scene->electrowetting.charging_time / parameters.time_step;
-    charging_interval =
-        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(charging_steps / kShownInAChargingTime));
-    const double settle_steps = scene->settle_time / parameters.time_step;
-    schedule = {&scene->schedule, static_cast<std::uint64_t>(std::llround(settle_steps)), 0};
-  }
-
-  /// What the scene has on the plate from the start. @throws engine::InvalidInput naming its key.
-  void place(const Scene& scene) {
-    const auto attempt = [&scene](const std::string& key, const auto& action) {
-      try {
-        action();
-      } catch (const engine::InvalidInput& error) {
-        throw engine::InvalidInput(fmt::format("{}: {}: {}", scene.source, key, error.what()));
-      }
-    };
-    for (std::size_t i = 0; i < scene.droplets.size(); ++i) {
-      attempt(fmt::format("droplets[{}]", i), [&] { simulation->add_droplet(scene.droplets[i]); });
-    }
-    for (std::size_t i = 0; i < scene.microparticles.size(); ++i) {
-      attempt(fmt::format("microparticles[{}]", i),
-              [&] { simulation->add_microparticle(scene.microparticles[i]); });
-    }
-    const engine::BodyForces& forces = scene.body_forces;
-    if (!forces.gravity.isZero(0) || !forces.magnetic.isZero(0))
-      attempt("body_forces", [&] { simulation->set_body_forces(forces); });
-  }
-
-  /// Takes charging pads on to this step, now and then: the wall is shown anew some ten times in a charging
-  /// time.
-  void charge_pads() {
-    if (simulation->steps() % charging_interval != 0 || !board.charging()) return;
-    Board next = board;
-    next.charge_until(simulation->steps());
-    show(next);
-  }
-
-  /// Makes a board the one that the wall shows, or changes nothing and throws.
-  void show(const Board& next) {
-    if (simulation->parameters().domain.has_wall()) simulation->set_wettability(next.field());
-    board = next;
-  }
-
-  std::unique_ptr<engine::Simulation> simulation;
-  Board board;
-  std::uint64_t charging_interval = 1;  ///< steps
-  Sequence schedule;
-  Sequence pattern;
-  std::string pattern_name;                ///< of the pattern that was loaded last; empty before the first
-  std::uint32_t newest_microparticle = 0;  ///< id of the one that a command added last
-  std::vector<CommandRecord> history;
-  std::vector<ScheduledReply> scheduled_replies;
-  std::optional<CapacitanceReading> reading;  ///< that nobody has taken yet
-  std::string fault;
-};
-
-}  // namespace
 
 struct Experiment::State {
   State(const Scene& given, const engine::Execution& how, std::optional<std::uint64_t> seed)
@@ -110,14 +27,12 @@ struct Experiment::State {
 
   void start() {
     auto fresh = std::make_unique<Run>(scene, parameters, curve, execution);
-    fresh->place(*scene);
+    fresh->place();
     run = std::move(fresh);
   }
 
   std::string save() const;
   void load(const std::string& bytes);
-  /// A run that goes on from what save() wrote before the engine's bytes.
-  std::unique_ptr<Run> run_from(const Json& saved, const engine::Parameters& saved_parameters) const;
 
   Reply apply(const Command& command);
   /// Neither the schedule nor a pattern can hold a reset or load a pattern into the sequence that is being
@@ -135,17 +50,32 @@ struct Experiment::State {
   std::string carry_out(const AddMicroparticle& command);
   std::string carry_out(const Remove& command);
   std::string carry_out(const SetBodyForces& command);
+  std::string carry_out(const InjectFault& command);
+  std::string carry_out(const SetDisabledChannels& command);
+  std::string carry_out(const Halt& command);
   std::string carry_out(const Reset& command);
 
+  /// @returns what the board's protection made of it, to be added to a reply.
   template <typename BoardCommand>
-  void change_board(const BoardCommand& command) {
+  std::string change_board(const BoardCommand& command) {
     Board next = run->board;
     next.charge_until(run->simulation->steps());
     next.apply(command);
+    const std::string halted = protect(next);
     run->show(next);
+    if (!halted.empty()) note(BoardEvent::Kind::halted, halted);
+    return halted.empty() ? "" : fmt::format("; the rail was halted, set_hv enables it again: {}", halted);
   }
+  /// Halts the rail of a board whose voltages do harm. @returns the reason; empty when they don't.
+  std::string protect(Board& board);
+  /// While the run goes on: liquid that spreads takes more current.
+  void protect_if_due();
+  void note(BoardEvent::Kind kind, const std::string& message);
 
-  std::vector<std::uint32_t> channels_on() const;
+  std::vector<std::uint32_t> channels_where(bool (Board::*holds)(std::size_t) const) const;
+  bool sensing_due() const;
+  /// F, of each pad as it is.
+  std::vector<double> capacitances();
   CapacitanceReading sense();
   /// Keeps a reading when its time has come and somebody wants it.
   void sense_if_due();
@@ -161,21 +91,52 @@ struct Experiment::State {
 
 // ---- sensing ----
 
-CapacitanceReading Experiment::State::sense() {
+std::vector<double> Experiment::State::capacitances() {
   if (!pad_capacitance) pad_capacitance.emplace(*scene);
   engine::ObserveRequest request;
   request.wetted = true;
-  const auto snapshot = run->simulation->observe(request);
   // Without a plate there are no electrodes either.
-  const engine::WettedArea wetted = snapshot->wetted.value_or(engine::WettedArea{});
-  return read_channels(pad_capacitance->capacitances(wetted), *scene, parameters.seed, snapshot->step);
+  return pad_capacitance->capacitances(
+      run->simulation->observe(request)->wetted.value_or(engine::WettedArea{}));
+}
+
+CapacitanceReading Experiment::State::sense() {
+  std::vector<double> sensed = capacitances();
+  for (std::size_t index = 0; index < sensed.size(); ++index) sensed[index] *= run->board.sensed_share(index);
+  return read_channels(std::move(sensed), *scene, parameters.seed, run->simulation->steps());
+}
+
+bool Experiment::State::sensing_due() const {
+  const double steps = std::round(scene->sensing.interval / parameters.time_step);
+  return run->simulation->steps() % static_cast<std::uint64_t>(std::max(1.0, steps)) == 0;
 }
 
 void Experiment::State::sense_if_due() {
-  if (!readings_wanted) return;
-  const double steps = std::round(scene->sensing.interval / parameters.time_step);
-  const auto interval = static_cast<std::uint64_t>(std::max(1.0, steps));
-  if (run->simulation->steps() % interval == 0) run->reading = sense();
+  if (readings_wanted && sensing_due()) run->reading = sense();
+}
+
+// ---- protection ----
+
+std::string Experiment::State::protect(Board& board) {
+  const auto trip = find_trip(board, *scene, [this] { return capacitances(); });
+  if (!trip) return "";
+  for (const std::uint32_t channel : trip->broken_down) board.apply(InjectFault{fault::kShort, channel});
+  board.apply(Halt{trip->reason});
+  return trip->reason;
+}
+
+void Experiment::State::protect_if_due() {
+  if (scene->rail.current_limit <= 0 || !sensing_due()) return;
+  Board next = run->board;
+  next.charge_until(run->simulation->steps());
+  const std::string halted = protect(next);
+  if (halted.empty()) return;
+  run->show(next);
+  note(BoardEvent::Kind::halted, halted);
+}
+
+void Experiment::State::note(BoardEvent::Kind kind, const std::string& message) {
+  run->board_events.push_back({kind, run->simulation->steps(), message});
 }
 
 // ---- commands ----
@@ -194,7 +155,8 @@ Reply Experiment::State::apply(const Command& command) {
       reply.message = std::visit([this](const auto& sound) { return carry_out(sound); }, command);
       reply.success = true;
       reply.step = run->simulation->steps();
-      reply.applied_channels = channels_on();
+      reply.applied_channels = channels_where(&Board::is_on);
+      reply.disabled_channels = channels_where(&Board::is_disabled);
       if (std::holds_alternative<AddMicroparticle>(command)) reply.microparticle = run->newest_microparticle;
     } catch (const engine::InvalidInput& refusal) {
       reply.message = refusal.what();
@@ -211,31 +173,76 @@ void Experiment::State::play_due(Sequence& sequence) {
 }
 
 std::string Experiment::State::carry_out(const SetElectrodes& command) {
-  change_board(command);
-  const std::string on = fmt::format("{}", fmt::join(command.channels, ", "));
+  const std::string halted = change_board(command);
+  const Board& board = run->board;
+  std::vector<std::uint32_t> on, left_out;
+  for (const std::uint32_t channel : command.channels) {
+    (board.is_disabled(scene->layout.index_of(channel)) ? left_out : on).push_back(channel);
+  }
   std::string message =
-      command.channels.empty() ? "all channels off" : "channels on: " + on + "; all others off";
-  const RailState& rail = run->board.rail();
-  if (!command.channels.empty() && !rail.enabled)
+      on.empty() ? "all channels off" : fmt::format("channels on: {}; all others off", fmt::join(on, ", "));
+  if (!left_out.empty()) message += fmt::format("; disabled and left out: {}", fmt::join(left_out, ", "));
+  if (!halted.empty()) return message + halted;
+  if (!on.empty() && !board.rail().enabled) {
     message += "; the rail is disabled, so no pad has a voltage";
+    if (!board.rail().halted.empty()) message += ", for it was halted: " + board.rail().halted;
+  }
   return message;
 }
 
 std::string Experiment::State::carry_out(const SetHv& command) {
-  change_board(command);
-  if (!command.enabled) return "rail disabled";
-  return fmt::format("rail at {} V, {} Hz", command.voltage, command.frequency);
+  const std::string halted = change_board(command);
+  if (!command.enabled) return "rail disabled" + halted;
+  return fmt::format("rail at {} V, {} Hz", command.voltage, command.frequency) + halted;
 }
 
 std::string Experiment::State::carry_out(const SetElectrodeVoltages& command) {
-  change_board(command);
+  const std::string& why = run->board.rail().halted;
+  const bool any =
+      std::any_of(command.voltages.begin(), command.voltages.end(), [](double v) { return v > 0; });
+  if (!why.empty() && any) {
+    throw engine::InvalidInput(
+        fmt::format("the rail is halted, allowed: set_hv that enables it. It was halted because: {}", why));
+  }
+  const std::string halted = change_board(command);
   return fmt::format("channels {} driven past the rail until the next set_electrodes",
-                     fmt::join(command.channels, ", "));
+                     fmt::join(command.channels, ", ")) +
+         halted;
 }
 
 std::string Experiment::State::carry_out(const SetWettability& command) {
+  const std::string halted = change_board(command);
+  return fmt::format("wettability program of {} positions over the whole plate", command.positions.size()) +
+         halted;
+}
+
+std::string Experiment::State::carry_out(const InjectFault& command) {
+  std::string message;
+  if (command.all) {
+    message = "all faults cleared";
+  } else if (command.kind == fault::kDisconnected) {
+    message = "the chip is disconnected";
+  } else if (command.kind == fault::kClear) {
+    message = fmt::format("channel {}: faults cleared", command.channel);
+  } else if (command.kind == fault::kWeak) {
+    message = fmt::format("channel {}: weak, {} of its voltage", command.channel, command.strength);
+  } else {
+    message = fmt::format("channel {}: {}", command.channel, command.kind);
+  }
+  note(BoardEvent::Kind::fault_injected, message);  // before what follows from it
+  return message + change_board(command);
+}
+
+std::string Experiment::State::carry_out(const SetDisabledChannels& command) {
+  const std::string halted = change_board(command);
+  if (command.channels.empty()) return "no channel disabled" + halted;
+  return fmt::format("channels disabled: {}", fmt::join(command.channels, ", ")) + halted;
+}
+
+std::string Experiment::State::carry_out(const Halt& command) {
   change_board(command);
-  return fmt::format("wettability program of {} positions over the whole plate", command.positions.size());
+  note(BoardEvent::Kind::halted, run->board.rail().halted);
+  return "rail disabled and all channels off; set_hv enables it again";
 }
 
 std::string Experiment::State::carry_out(const LoadPattern& command) {
@@ -277,11 +284,11 @@ std::string Experiment::State::carry_out(const Reset&) {
   return "back at the start of the scene";
 }
 
-std::vector<std::uint32_t> Experiment::State::channels_on() const {
+std::vector<std::uint32_t> Experiment::State::channels_where(bool (Board::*holds)(std::size_t) const) const {
   std::vector<std::uint32_t> channels;
   const auto& electrodes = scene->layout.electrodes();
   for (std::size_t i = 0; i < electrodes.size(); ++i) {
-    if (run->board.is_on(i)) channels.push_back(electrodes[i].channel);
+    if ((run->board.*holds)(i)) channels.push_back(electrodes[i].channel);
   }
   return channels;
 }
@@ -294,18 +301,7 @@ std::string Experiment::State::save() const {
   Json saved;
   saved["scene"] = scene->name;
   saved["seed"] = parameters.seed;
-  saved["board"] = Json::array();
-  for (const Command& command : run->board.as_commands()) saved["board"].push_back(to_json(command));
-  if (run->board.charging()) {
-    const PadCharge charge = run->board.charge();
-    saved["charge"] = {{"step", charge.step}, {"numbers", charge.numbers}};
-  }
-  saved["schedule_next"] = run->schedule.next;
-  saved["pattern"] = run->pattern_name;
-  saved["pattern_start"] = run->pattern.start_step;
-  saved["pattern_next"] = run->pattern.next;
-  saved["history"] = Json::array();
-  for (const auto& [step, command] : run->history) saved["history"].push_back({step, to_json(command)});
+  saved.update(run->save());
   return saved.dump() + "\n" + run->simulation->save_state();
 }
 
@@ -320,42 +316,14 @@ void Experiment::State::load(const std::string& bytes) {
     }
     engine::Parameters saved_parameters = parameters;
     saved_parameters.seed = saved.at("seed").get<std::uint64_t>();
-    auto loaded = run_from(saved, saved_parameters);
+    auto loaded = std::make_unique<Run>(scene, saved_parameters, curve, execution);
+    loaded->restore(saved, curve);
     loaded->simulation->load_state(bytes.substr(end + 1));
     run = std::move(loaded);
     parameters = saved_parameters;
   } catch (const Json::exception& error) {
     throw engine::InvalidInput(fmt::format("saved run: {}", error.what()));
   }
-}
-
-std::unique_ptr<Run> Experiment::State::run_from(const Json& saved,
-                                                 const engine::Parameters& saved_parameters) const {
-  auto loaded = std::make_unique<Run>(scene, saved_parameters, curve, execution);
-  Board board(scene);
-  for (const Json& text : saved.at("board")) {
-    const Command command = command_from_json(text.get<std::string>());
-    const auto wrong = violations(command, *scene, curve);
-    if (!wrong.empty()) throw engine::InvalidInput(fmt::format("saved run: {}", fmt::join(wrong, "; ")));
-    board.apply(command);
-  }
-  if (saved.contains("charge")) {
-    const Json& charge = saved["charge"];
-    board.set_charge(
-        {charge.at("step").get<std::uint64_t>(), charge.at("numbers").get<std::vector<double>>()});
-  }
-  loaded->show(board);
-  loaded->schedule.next = saved.at("schedule_next").get<std::size_t>();
-  loaded->pattern_name = saved.at("pattern").get<std::string>();
-  if (const auto pattern = scene->patterns.find(loaded->pattern_name); pattern != scene->patterns.end()) {
-    loaded->pattern = {&pattern->second, saved.at("pattern_start").get<std::uint64_t>(),
-                       saved.at("pattern_next").get<std::size_t>()};
-  }
-  for (const Json& record : saved.at("history")) {
-    const auto step = record.at(0).get<std::uint64_t>();
-    loaded->history.push_back({step, command_from_json(record.at(1).get<std::string>())});
-  }
-  return loaded;
 }
 
 // ---- the experiment ----
@@ -383,6 +351,7 @@ void Experiment::step() {
     state_->run->fault = instability.what();
     throw;
   }
+  state_->protect_if_due();
   state_->sense_if_due();
 }
 
@@ -396,6 +365,10 @@ std::vector<engine::MicroparticleEvent> Experiment::take_microparticle_events() 
   return state_->run->simulation->take_microparticle_events();
 }
 
+std::vector<BoardEvent> Experiment::take_board_events() {
+  return std::exchange(state_->run->board_events, {});
+}
+
 std::vector<ScheduledReply> Experiment::take_scheduled_replies() {
   return std::exchange(state_->run->scheduled_replies, {});
 }
@@ -405,7 +378,8 @@ std::vector<ElectrodeState> Experiment::electrodes() const {
   const auto& electrodes = scene().layout.electrodes();
   std::vector<ElectrodeState> states;
   for (std::size_t i = 0; i < electrodes.size(); ++i) {
-    states.push_back({electrodes[i].channel, board.is_on(i), board.voltage(i), board.contact_angle(i)});
+    states.push_back({electrodes[i].channel, board.is_on(i), board.voltage(i), board.contact_angle(i),
+                      board.is_disabled(i)});
   }
   return states;
 }
@@ -420,6 +394,27 @@ std::vector<std::uint32_t> Experiment::channels_under(const engine::DropletObser
     channels.push_back(scene().layout.electrodes()[index].channel);
   }
   return channels;
+}
+
+ShortsReport Experiment::detect_shorts() const {
+  const Board& board = state_->run->board;
+  ShortsReport report;
+  if (board.rail().enabled) {
+    report.message = "the rail is enabled, allowed: a rail that is off (set_hv, halt)";
+    return report;
+  }
+  report.success = true;
+  const auto& electrodes = scene().layout.electrodes();
+  for (std::size_t i = 0; i < electrodes.size(); ++i) {
+    // What is unplugged or does not switch draws no current either.
+    if (board.faults(i).shorted && board.sensed_share(i) > 0)
+      report.channels.push_back(electrodes[i].channel);
+  }
+  std::sort(report.channels.begin(), report.channels.end());
+  report.message = report.channels.empty()
+                       ? "no channel is shorted"
+                       : fmt::format("channels shorted: {}", fmt::join(report.channels, ", "));
+  return report;
 }
 
 CapacitanceReading Experiment::sense() const { return state_->sense(); }

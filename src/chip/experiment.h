@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "chip/board.h"
+#include "chip/board_event.h"
 #include "chip/capacitance.h"
 #include "chip/command.h"
 #include "chip/scene.h"
@@ -17,6 +18,14 @@ struct ElectrodeState {
   bool on;               ///< switched to the rail
   double voltage;        ///< V rms on the pad now
   double contact_angle;  ///< degrees, on the pad
+  bool disabled = false;
+};
+
+/// What a test of all channels for shorts found.
+struct ShortsReport {
+  bool success = false;  ///< false: the rail is enabled
+  std::string message;
+  std::vector<std::uint32_t> channels;  ///< rising
 };
 
 /// What became of a command that the scene's schedule or a running pattern gave.
@@ -50,6 +59,7 @@ class Experiment {
   std::shared_ptr<const engine::Snapshot> observe(const engine::ObserveRequest& request = {}) const;
   std::vector<engine::DropletEvent> take_events();
   std::vector<engine::MicroparticleEvent> take_microparticle_events();
+  std::vector<BoardEvent> take_board_events();
   /// What the schedule and patterns did since the last call, in order.
   std::vector<ScheduledReply> take_scheduled_replies();
 
@@ -57,6 +67,9 @@ class Experiment {
   RailState rail() const;
   /// Channels under a droplet's footprint: those whose pad the wetted area overlaps.
   std::vector<std::uint32_t> channels_under(const engine::DropletObservation& droplet) const;
+  /// Tests every channel with a low voltage, as a board does before it enables the rail. Refused while the
+  /// rail is enabled.
+  ShortsReport detect_shorts() const;
   /// What the board senses of all channels at this step: a function of the state, the seed and the step.
   CapacitanceReading sense() const;
   /// Whether step() keeps a reading at every multiple of the sensing interval. Changes nothing else.

@@ -15,6 +15,11 @@
 
 namespace dmf::chip {
 
+/// What the high-voltage supply gives.
+struct Rail {
+  double current_limit = 0;  ///< of all pads together, A rms; more halts the rail. 0: none
+};
+
 /// How the board senses the capacitance of its channels.
 struct Sensing {
   double interval = 1;             ///< between two readings, tau; > 0
@@ -38,6 +43,7 @@ struct Scene {
   engine::Units units;
   std::string calibration_file;  ///< resolved path; empty means Lan's own fit
   Electrowetting electrowetting;
+  Rail rail;
   Sensing sensing;
   Layout layout;                          ///< inside the domain
   std::optional<SetWettability> program;  ///< shown from the start, as if commanded before the first step

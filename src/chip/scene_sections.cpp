@@ -298,6 +298,9 @@ std::optional<engine::ContactAngleCurve> read_wettability(const YamlReader& root
 bool read_chip(const YamlReader& root, Scene& scene) {
   const auto chip = root.optional_mapping("chip");
   if (!chip) return true;
+  if (const auto rail = chip->optional_mapping("rail")) {
+    scene.rail.current_limit = rail->quantity("current_limit", Dimension::current, Range::at_least(0), 0.0);
+  }
   const Domain& domain = scene.parameters.domain;
   if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
   read_electrowetting(*chip, scene, scene.electrowetting);

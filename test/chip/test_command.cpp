@@ -46,7 +46,16 @@ std::vector<Command> one_of_each() {
           sphere(),
           dumbbell(),
           Remove{0, 3},
-          SetBodyForces{{0, 1.0 / 3, -9.81}, {1e-9 / 3, 0, -0.0}}};
+          SetBodyForces{{0, 1.0 / 3, -9.81}, {1e-9 / 3, 0, -0.0}},
+          InjectFault{fault::kStuckOn, 4294967295u},
+          InjectFault{fault::kWeak, 3, 0.1 + 0.2},
+          InjectFault{fault::kDisconnected},
+          InjectFault{fault::kClear, 2},
+          InjectFault{fault::kClear, 0, 1, true},
+          SetDisabledChannels{{5, 2}},
+          SetDisabledChannels{},
+          Halt{},
+          Halt{"over-current: 0.1 A"}};
 }
 
 TEST(CommandJson, RoundTripsToTheLastBit) {
@@ -89,6 +98,11 @@ TEST(CommandJson, LooksAsDocumented) {
   EXPECT_EQ(to_json(Remove{0, 3}), R"({"command":"remove","microparticle":3})");
   EXPECT_EQ(to_json(SetBodyForces{{0, 0, -9.81}, {}}),
             R"({"command":"set_body_forces","gravity":[0.0,0.0,-9.81],"magnetic":[0.0,0.0,0.0]})");
+  EXPECT_EQ(to_json(InjectFault{fault::kWeak, 3, 0.5}),
+            R"({"command":"inject_fault","kind":"weak","channel":3,"strength":0.5})");
+  EXPECT_EQ(to_json(InjectFault{fault::kClear, 0, 1, true}),
+            R"({"command":"inject_fault","kind":"clear","all":true})");
+  EXPECT_EQ(to_json(Halt{}), R"({"command":"halt"})");
 }
 
 TEST(CommandJson, EveryCommandHasTheNameOfItsService) {
@@ -114,6 +128,12 @@ TEST(CommandJson, WhatIsWrongIsNamed) {
                     "gravity: a list of 2, allowed: a list of 3"));
   EXPECT_TRUE(
       holds(refused(R"({"command":"set_electrodes","channels":[-1]})"), "channels[0]: -1, allowed: a whole"));
+  EXPECT_TRUE(holds(refused(R"({"command":"inject_fault","kind":"melted"})"),
+                    "kind: melted, allowed: stuck_on, stuck_off, short, weak, disconnected, clear"));
+  EXPECT_TRUE(holds(refused(R"({"command":"inject_fault","kind":"weak","channel":1})"), "strength: missing"));
+  EXPECT_TRUE(holds(refused(R"({"command":"inject_fault","kind":"stuck_on"})"), "channel: missing"));
+  EXPECT_TRUE(holds(refused(R"({"command":"inject_fault","kind":"short","channel":1,"all":true})"),
+                    "all: unknown key"));
   EXPECT_TRUE(holds(refused("{"), "is not YAML"));
 }
 
