@@ -206,6 +206,10 @@ void Board::charge_until(std::uint64_t step) {
   }
 }
 
+void Board::settle() {
+  for (std::size_t index = 0; index < pads_.size(); ++index) set_number(index, target_number(index));
+}
+
 bool Board::charging() const {
   if (scene_->electrowetting.charging_time <= 0) return false;
   for (std::size_t index = 0; index < pads_.size(); ++index) {

@@ -59,6 +59,8 @@ class Board {
   /// With a charging time a pad's electrowetting number follows its voltage exponentially. Takes all pads on
   /// to a step, at most this late; a pad whose angle is within 0.05 degrees of its end is there.
   void charge_until(std::uint64_t step);
+  /// Takes all pads to where their voltages lead, as after a long time.
+  void settle();
   /// Some pad's angle is not yet what its voltage leads to.
   bool charging() const;
   PadCharge charge() const;
@@ -71,8 +73,12 @@ class Board {
   bool is_disabled(std::size_t index) const { return pads_[index].disabled; }
   /// On, or driven past the rail: somebody wants a voltage on this pad, whether it has one or not.
   bool is_wanted(std::size_t index) const { return pads_[index].on || pads_[index].own_voltage > 0.0; }
+  /// Driven past the rail.
+  bool is_driven(std::size_t index) const { return pads_[index].own_voltage.has_value(); }
   const PadFaults& faults(std::size_t index) const { return pads_[index].faults; }
   bool disconnected() const { return disconnected_; }
+  /// A wettability program overrides the voltages.
+  bool shows_program() const { return program_.has_value(); }
   /// V rms that a sound pad would have.
   double commanded_voltage(std::size_t index) const;
   /// V rms on the pad: none when its channel is disabled or stuck off or the board disconnected; the rail's

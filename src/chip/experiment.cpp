@@ -417,6 +417,17 @@ ShortsReport Experiment::detect_shorts() const {
   return report;
 }
 
+DropletExplanation Experiment::explain_droplet(std::uint32_t id) const {
+  const auto snapshot = observe();
+  std::vector<std::uint32_t> known;
+  for (const engine::DropletObservation& droplet : snapshot->droplets) {
+    if (droplet.id == id) return chip::explain_droplet(droplet, state_->run->board, scene());
+    known.push_back(droplet.id);
+  }
+  throw engine::InvalidInput(
+      fmt::format("droplet {} does not exist; droplets are [{}]", id, fmt::join(known, ", ")));
+}
+
 CapacitanceReading Experiment::sense() const { return state_->sense(); }
 
 void Experiment::want_readings(bool wanted) { state_->readings_wanted = wanted; }

@@ -7,6 +7,7 @@
 #include "chip/board_event.h"
 #include "chip/capacitance.h"
 #include "chip/command.h"
+#include "chip/explanation.h"
 #include "chip/scene.h"
 #include "engine/simulation.h"
 
@@ -76,6 +77,8 @@ class Experiment {
   void want_readings(bool wanted);
   /// The newest reading since the last call.
   std::optional<CapacitanceReading> take_reading();
+  /// Why a droplet moves or does not. @throws engine::InvalidInput when there is none of that id.
+  DropletExplanation explain_droplet(std::uint32_t id) const;
   /// Contact angle that is commanded at a point (r_c), degrees.
   double commanded_angle(double x, double y) const;
 
