@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 
+#include "chip/capacitance.h"
+
 namespace dmf::node {
 
 namespace {
@@ -176,6 +178,7 @@ dmf_sim::ChipState to_state(const Frame& frame, const ConversionContext& context
   state.hv_voltage = frame.rail.voltage;
   state.hv_frequency = frame.rail.frequency;
   state.hv_enabled = frame.rail.enabled;
+  state.halted = frame.rail.halted;
   state.temperature_mdpd = snapshot.temperature;
   state.target_temperature_mdpd = context.scene.parameters.liquid.temperature;
   state.momentum_mdpd = to_vector(snapshot.momentum);
@@ -204,6 +207,7 @@ dmf_sim::ElectrodeArray to_electrodes(const Frame& frame) {
     dmf_sim::ElectrodeState state;
     state.channel = electrode.channel;
     state.on = electrode.on;
+    state.disabled = electrode.disabled;
     state.voltage = electrode.voltage;
     state.contact_angle_deg = electrode.contact_angle;
     message.electrodes.push_back(state);
@@ -259,11 +263,23 @@ dmf_sim::Layout to_layout(const ConversionContext& context) {
     message.neighbours = electrode.neighbours;
     layout.electrodes.push_back(message);
   }
-  layout.max_voltage = scene.electrowetting.max_voltage;
-  layout.reference_voltage = scene.electrowetting.reference_voltage;
-  layout.reference_angle_deg = scene.electrowetting.reference_angle;
-  layout.rest_angle_deg = scene.electrowetting.rest_angle;
-  layout.saturation_angle_deg = scene.electrowetting.saturation_angle;
+  const engine::Domain& domain = scene.parameters.domain;
+  if (domain.upper_side[2] == engine::Side::wall) layout.plate_gap = domain.size().z() * length;
+  const chip::Electrowetting& law = scene.electrowetting;
+  layout.max_voltage = law.max_voltage;
+  layout.reference_voltage = law.reference_voltage;
+  layout.reference_angle_deg = law.reference_angle;
+  layout.rest_angle_deg = law.rest_angle;
+  layout.saturation_angle_deg = law.saturation_angle;
+  layout.threshold_voltage = law.threshold_voltage;
+  layout.cutoff_frequency = law.cutoff_frequency;
+  layout.breakdown_voltage = law.breakdown_voltage;
+  layout.charging_time = law.charging_time * scene.units.time_s;
+  layout.liquid_capacitance = chip::liquid_capacitance(scene);
+  layout.filler_capacitance = chip::filler_capacitance(scene);
+  layout.capacitance_noise = scene.sensing.noise;
+  layout.capacitance_offset = scene.sensing.offset;
+  layout.sensing_interval = scene.sensing.interval * scene.units.time_s;
   layout.length_unit = scene.units.length_m;
   layout.time_unit = scene.units.time_s;
   layout.mass_unit = scene.units.mass_kg;
@@ -284,6 +300,36 @@ dmf_sim::Command to_command(const CommandNote& command, const ConversionContext&
   message.name = chip::name_of(command.record.command);
   message.json = chip::to_json(command.record.command);
   return message;
+}
+
+dmf_sim::Capacitance to_capacitance(const CapacitanceNote& note, const ConversionContext& context) {
+  dmf_sim::Capacitance message;
+  message.header.stamp = to_ros_time(note.stamp);
+  message.header.frame_id = kChipFrame;
+  message.run = note.run;
+  message.step = note.reading.step;
+  message.time = note.time * context.scene.units.time_s;
+  for (const chip::Electrode& electrode : context.scene.layout.electrodes())
+    message.channels.push_back(electrode.channel);
+  message.capacitance = note.reading.capacitance;
+  return message;
+}
+
+dmf_sim::ExplainDroplet::Response to_response(const chip::DropletExplanation& explanation,
+                                              const ConversionContext& context) {
+  const engine::Units& units = context.scene.units;
+  const Eigen::Vector2d& driving = explanation.driving_force;
+  dmf_sim::ExplainDroplet::Response response;
+  response.driving_force = to_vector(Vector3d(driving.x(), driving.y(), 0) * units.force_N());
+  response.driving_force_mdpd = driving.norm();
+  response.opposing_force = explanation.opposing_force * units.force_N();
+  for (const double force : explanation.side_forces) response.side_forces.push_back(force * units.force_N());
+  response.channels = explanation.channels;
+  response.has_nearest_channel = explanation.nearest_channel.has_value();
+  response.nearest_channel = explanation.nearest_channel.value_or(0);
+  response.nearest_distance = explanation.nearest_distance * units.length_m;
+  response.needed_voltage = or_nan(explanation.needed_voltage);
+  return response;
 }
 
 dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context) {
@@ -437,17 +483,25 @@ diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const Conver
                    value("kernel", frame.kernel),
                    value("threads", fmt::format("{}", frame.threads))};
 
-  std::size_t on = 0;
-  for (const auto& electrode : frame.electrodes) on += electrode.on ? 1 : 0;
+  std::size_t on = 0, disabled = 0;
+  for (const auto& electrode : frame.electrodes) {
+    on += electrode.on ? 1 : 0;
+    disabled += electrode.disabled ? 1 : 0;
+  }
   DiagnosticStatus rail;
   rail.name = "chip: high voltage";
   rail.hardware_id = engine.hardware_id;
-  rail.level = DiagnosticStatus::OK;
-  rail.message = frame.rail.enabled ? fmt::format("{:g} V rms", frame.rail.voltage) : "off";
+  const bool halted = !frame.rail.halted.empty();
+  rail.level = halted ? DiagnosticStatus::ERROR : DiagnosticStatus::OK;
+  rail.message = halted               ? "halted: " + frame.rail.halted
+                 : frame.rail.enabled ? fmt::format("{:g} V rms", frame.rail.voltage)
+                                      : "off";
   rail.values = {value("voltage (V rms)", fmt::format("{:g}", frame.rail.voltage)),
                  value("frequency (Hz)", fmt::format("{:g}", frame.rail.frequency)),
                  value("enabled", frame.rail.enabled ? "true" : "false"),
-                 value("electrodes on", fmt::format("{}", on))};
+                 value("halted", frame.rail.halted),
+                 value("electrodes on", fmt::format("{}", on)),
+                 value("electrodes disabled", fmt::format("{}", disabled))};
 
   diagnostic_msgs::DiagnosticArray array;
   array.header.stamp = to_ros_time(frame.stamp);

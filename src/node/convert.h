@@ -1,11 +1,13 @@
 #pragma once
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <dmf_sim/AddMicroparticle.h>
+#include <dmf_sim/Capacitance.h>
 #include <dmf_sim/ChipState.h>
 #include <dmf_sim/Command.h>
 #include <dmf_sim/DropletArray.h>
 #include <dmf_sim/ElectrodeArray.h>
 #include <dmf_sim/Event.h>
+#include <dmf_sim/ExplainDroplet.h>
 #include <dmf_sim/Layout.h>
 #include <dmf_sim/MicroparticleArray.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -52,6 +54,10 @@ dmf_sim::DropletArray to_droplets(const Frame& frame, const ConversionContext& c
 dmf_sim::MicroparticleArray to_microparticles(const Frame& frame, const ConversionContext& context);
 dmf_sim::Layout to_layout(const ConversionContext& context);
 dmf_sim::Command to_command(const CommandNote& command, const ConversionContext& context);
+dmf_sim::Capacitance to_capacitance(const CapacitanceNote& note, const ConversionContext& context);
+/// Without success and message.
+dmf_sim::ExplainDroplet::Response to_response(const chip::DropletExplanation& explanation,
+                                              const ConversionContext& context);
 dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context);
 
 std::array<double, 3> to_array(const geometry_msgs::Vector3& vector);
@@ -73,7 +79,7 @@ std::vector<geometry_msgs::TransformStamped> electrode_transforms(const Conversi
                                                                   ros::Time stamp);
 
 /// The engine's health (ERROR after a fault, WARN when the temperature is more than a tenth off) and the
-/// rail.
+/// rail (ERROR while it is halted).
 diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const ConversionContext& context);
 
 }  // namespace dmf::node

@@ -184,6 +184,7 @@ void EngineThread::begin_run(double old_time) {
   clock_.start_run(old_time, time_of(experiment_->steps()));
   rate_.restart(Clock::now(), experiment_->steps());
   commands_seen_ = 0;
+  served_listeners_ = 0;
   collect_commands();
   publish_soon();
 }
@@ -204,6 +205,23 @@ void EngineThread::publish_if_due() {
   last_tick_ = frame->stamp;
   paced_ = false;
   outbox_.put(std::move(frame));
+  put_capacitance();
+}
+
+void EngineThread::put_capacitance() {
+  if (!fault_.empty()) return;
+  const std::uint32_t listeners = capacitance_listeners_;
+  experiment_->want_readings(listeners > 0);
+  std::optional<chip::CapacitanceReading> reading = experiment_->take_reading();
+  if (!reading && listeners > served_listeners_) reading = experiment_->sense();
+  served_listeners_ = listeners;
+  if (!reading || listeners == 0) return;
+  CapacitanceNote result;
+  result.time = time_of(reading->step);
+  result.stamp = clock_.nanoseconds(result.time);
+  result.run = run_;
+  result.reading = std::move(*reading);
+  outbox_.put(std::move(result));
 }
 
 std::shared_ptr<const Frame> EngineThread::make_frame(const engine::ObserveRequest& request) {
@@ -286,6 +304,10 @@ void EngineThread::collect_events() {
     (picked_up ? result.after : result.before) = {event.droplet};
     result.microparticle = event.microparticle;
   }
+  for (const chip::BoardEvent& event : experiment_->take_board_events()) {
+    add(event.step, event.kind == chip::BoardEvent::Kind::halted ? "halted" : "fault_injected",
+        event.message);
+  }
   // At the same step droplets come first: they carry.
   std::stable_sort(notes.begin(), notes.end(),
                    [](const EventNote& a, const EventNote& b) { return a.step < b.step; });
@@ -336,6 +358,7 @@ chip::Reply EngineThread::apply(const chip::Command& command) {
     } else {
       collect_commands();
       collect_scheduled();
+      collect_events();
       if (paused_) {
         reply.message += "; paused, it acts from the next step on";
         publish_soon();
@@ -412,6 +435,35 @@ std::shared_ptr<const Frame> EngineThread::inspect(bool hash) {
     engine::ObserveRequest request;
     request.hash = hash;
     return make_frame(request);
+  });
+}
+
+Explained EngineThread::explain_droplet(std::uint32_t id) {
+  return ask([this, id] {
+    Explained explained;
+    explained.outcome.step = experiment_->steps();
+    if (!fault_.empty()) {
+      explained.outcome.message =
+          "refused, the run was halted: " + fault_ + "; allowed: ~reset, ~load_checkpoint";
+      return explained;
+    }
+    try {
+      explained.explanation = experiment_->explain_droplet(id);
+      explained.outcome.success = true;
+      explained.outcome.message = explained.explanation.message;
+    } catch (const engine::InvalidInput& error) {
+      explained.outcome.message = error.what();
+    }
+    return explained;
+  });
+}
+
+chip::ShortsReport EngineThread::detect_shorts() {
+  return ask([this] {
+    if (fault_.empty()) return experiment_->detect_shorts();
+    chip::ShortsReport refused;
+    refused.message = "refused, the run was halted: " + fault_ + "; allowed: ~reset, ~load_checkpoint";
+    return refused;
   });
 }
 

@@ -42,6 +42,12 @@ struct Outcome {
   std::uint64_t step = 0;  ///< steps of the run when it was answered
 };
 
+/// Why a droplet moves or does not.
+struct Explained {
+  Outcome outcome;
+  chip::DropletExplanation explanation;
+};
+
 /// The complete state of a run with what a person wants to know of it.
 struct SavedRun {
   Outcome outcome;
@@ -79,6 +85,11 @@ class EngineThread {
   /// The state right now. The snapshot's hash is set when asked for and the run is sound.
   std::shared_ptr<const Frame> inspect(bool hash);
 
+  /// Why a droplet moves or does not.
+  Explained explain_droplet(std::uint32_t id);
+  /// Which channels are shorted, as the board can find out while the rail is off.
+  chip::ShortsReport detect_shorts();
+
   SavedRun save();
   /// Goes on from a saved state: a new run. The run stays paused or running; it recovers from a fault.
   /// `name` is what people call the state. Refused, unchanged, when the state is not one of this scene's.
@@ -88,6 +99,9 @@ class EngineThread {
 
   /// Whether anybody looks at the beads: frames contain them only then.
   void want_beads(bool wanted) { beads_wanted_ = wanted; }
+  /// How many listen to the capacitance: readings are taken only while somebody does, and one at once for
+  /// whoever joins.
+  void want_capacitance(std::uint32_t listeners) { capacitance_listeners_ = listeners; }
 
   Outbox& outbox() { return outbox_; }
 
@@ -119,6 +133,7 @@ class EngineThread {
   void begin_run(double old_time);
   void publish_if_due();
   void publish_soon() { next_frame_ = Clock::now(); }
+  void put_capacitance();
   std::shared_ptr<const Frame> make_frame(const engine::ObserveRequest& request);
   void collect_commands();
   void collect_scheduled();
@@ -141,11 +156,13 @@ class EngineThread {
   std::shared_ptr<const engine::Snapshot>
       last_snapshot_;  ///< shown after a fault: the state itself is garbage then
   Clock::time_point next_step_, next_frame_, next_display_;
-  std::uint64_t last_tick_ = 0;  ///< ns
-  bool paced_ = false;           ///< waited for max_steps_per_second since the last frame
+  std::uint64_t last_tick_ = 0;         ///< ns
+  std::uint32_t served_listeners_ = 0;  ///< of the capacitance, that had a reading
+  bool paced_ = false;                  ///< waited for max_steps_per_second since the last frame
 
   // Shared.
   std::atomic<bool> beads_wanted_{false};
+  std::atomic<std::uint32_t> capacitance_listeners_{0};
   Outbox outbox_;
   std::mutex mutex_;
   std::condition_variable requested_;

@@ -42,7 +42,15 @@ struct CommandNote {
   chip::CommandRecord record;
 };
 
-/// Something that happened, to a droplet, to a microparticle or to the run.
+/// What the board senses at one step.
+struct CapacitanceNote {
+  std::uint64_t stamp = 0;  ///< ROS time, ns
+  std::uint32_t run = 0;
+  double time = 0;  ///< tau
+  chip::CapacitanceReading reading;
+};
+
+/// Something that happened, to a droplet, to a microparticle, to the board or to the run.
 struct EventNote {
   std::uint64_t stamp = 0;  ///< ROS time, ns
   std::uint32_t run = 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,15 +13,16 @@
 namespace dmf::node {
 
 /// What the engine thread leaves for the publisher thread. The engine never waits here: a frame that was not
-/// taken yet is replaced by the newer one, and so is the clock. Commands and events are kept, in order, until
-/// taken.
+/// taken yet is replaced by the newer one, and so are a reading and the clock. Commands and events are kept,
+/// in order, until taken.
 class Outbox {
  public:
   struct Delivery {
     std::shared_ptr<const Frame> frame;  ///< null when there is no new one
     std::vector<CommandNote> commands;
     std::vector<EventNote> events;
-    std::uint64_t clock = 0;  ///< newest ROS time, ns; 0 when there is no news
+    std::optional<CapacitanceNote> capacitance;  ///< newest that was not taken
+    std::uint64_t clock = 0;                     ///< newest ROS time, ns; 0 when there is no news
   };
 
   void put(std::shared_ptr<const Frame> frame) {
@@ -34,6 +36,9 @@ class Outbox {
   }
   void put(EventNote event) {
     change([&](Delivery& d) { d.events.push_back(std::move(event)); });
+  }
+  void put(CapacitanceNote reading) {
+    change([&](Delivery& d) { d.capacitance = std::move(reading); });
   }
   void put_clock(std::uint64_t nanoseconds) {
     change([&](Delivery& d) { d.clock = nanoseconds; });

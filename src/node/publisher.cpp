@@ -46,6 +46,7 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
   electrodes_ = private_handle.advertise<dmf_sim::ElectrodeArray>("electrodes", kStateQueue, true);
   droplets_ = private_handle.advertise<dmf_sim::DropletArray>("droplets", kStateQueue);
   microparticles_ = private_handle.advertise<dmf_sim::MicroparticleArray>("microparticles", kStateQueue);
+  capacitance_ = private_handle.advertise<dmf_sim::Capacitance>("capacitance", kStateQueue);
   particles_ = private_handle.advertise<sensor_msgs::PointCloud2>("particles", kDisplayQueue);
   markers_ = private_handle.advertise<visualization_msgs::MarkerArray>("markers", kDisplayQueue);
   commands_ = private_handle.advertise<dmf_sim::Command>(
@@ -70,6 +71,7 @@ void Publisher::loop() {
   Outbox::Delivery delivery;
   while (!stopping_) {
     engine_.want_beads(particles_.getNumSubscribers() + markers_.getNumSubscribers() > 0);
+    engine_.want_capacitance(capacitance_.getNumSubscribers());
     if (engine_.outbox().take(delivery, kPatience)) publish(delivery);
   }
 }
@@ -80,6 +82,7 @@ void Publisher::publish(const Outbox::Delivery& delivery) {
   for (const CommandNote& command : delivery.commands) publish_command(command);
   for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));
   if (delivery.frame) publish_frame(*delivery.frame);
+  if (delivery.capacitance) capacitance_.publish(to_capacitance(*delivery.capacitance, context_));
 }
 
 void Publisher::publish_clock(std::uint64_t nanoseconds) {

@@ -48,7 +48,7 @@ class Publisher {
   EngineThread& engine_;
   const ConversionContext& context_;
   ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, commands_,
-      events_, layout_, diagnostics_;
+      events_, layout_, diagnostics_, capacitance_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 

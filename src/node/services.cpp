@@ -34,6 +34,11 @@ Services::Services(ros::NodeHandle& private_handle, EngineThread& engine, const 
   advertise("add_microparticle", &Services::add_microparticle);
   advertise("remove", &Services::remove);
   advertise("set_body_forces", &Services::set_body_forces);
+  advertise("halt", &Services::halt);
+  advertise("set_disabled_channels", &Services::set_disabled_channels);
+  advertise("detect_shorts", &Services::detect_shorts);
+  advertise("inject_fault", &Services::inject_fault);
+  advertise("explain_droplet", &Services::explain_droplet);
   advertise("pause_physics", &Services::pause);
   advertise("unpause_physics", &Services::unpause);
   advertise("step", &Services::step);
@@ -103,6 +108,43 @@ bool Services::remove(dmf_sim::Remove::Request& request, dmf_sim::Remove::Respon
 bool Services::set_body_forces(dmf_sim::SetBodyForces::Request& request,
                                dmf_sim::SetBodyForces::Response& response) {
   copy(engine_.apply(chip::SetBodyForces{to_array(request.gravity), to_array(request.magnetic)}), response);
+  return true;
+}
+
+bool Services::halt(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  copy(engine_.apply(chip::Halt{}), response);
+  return true;
+}
+
+bool Services::set_disabled_channels(dmf_sim::SetDisabledChannels::Request& request,
+                                     dmf_sim::SetDisabledChannels::Response& response) {
+  const chip::Reply reply = engine_.apply(chip::SetDisabledChannels{request.channels});
+  copy(reply, response);
+  response.disabled_channels = reply.disabled_channels;
+  return true;
+}
+
+bool Services::detect_shorts(dmf_sim::DetectShorts::Request&, dmf_sim::DetectShorts::Response& response) {
+  const chip::ShortsReport report = engine_.detect_shorts();
+  response.success = report.success;
+  response.message = report.message;
+  response.channels = report.channels;
+  return true;
+}
+
+bool Services::inject_fault(dmf_sim::InjectFault::Request& request,
+                            dmf_sim::InjectFault::Response& response) {
+  const chip::InjectFault fault{request.kind, request.channel, request.strength, request.all != 0};
+  copy(engine_.apply(fault), response);
+  return true;
+}
+
+bool Services::explain_droplet(dmf_sim::ExplainDroplet::Request& request,
+                               dmf_sim::ExplainDroplet::Response& response) {
+  const Explained explained = engine_.explain_droplet(request.droplet);
+  response = to_response(explained.explanation, context_);
+  response.success = explained.outcome.success;
+  response.message = explained.outcome.message;
   return true;
 }
 

@@ -1,12 +1,16 @@
 #pragma once
 #include <dmf_sim/AddMicroparticle.h>
 #include <dmf_sim/Checkpoint.h>
+#include <dmf_sim/DetectShorts.h>
 #include <dmf_sim/DispenseDroplet.h>
+#include <dmf_sim/ExplainDroplet.h>
 #include <dmf_sim/GetLayout.h>
 #include <dmf_sim/GetState.h>
+#include <dmf_sim/InjectFault.h>
 #include <dmf_sim/LoadPattern.h>
 #include <dmf_sim/Remove.h>
 #include <dmf_sim/SetBodyForces.h>
+#include <dmf_sim/SetDisabledChannels.h>
 #include <dmf_sim/SetElectrodeVoltages.h>
 #include <dmf_sim/SetElectrodes.h>
 #include <dmf_sim/SetHv.h>
@@ -47,6 +51,13 @@ class Services {
                          dmf_sim::AddMicroparticle::Response& response);
   bool remove(dmf_sim::Remove::Request& request, dmf_sim::Remove::Response& response);
   bool set_body_forces(dmf_sim::SetBodyForces::Request& request, dmf_sim::SetBodyForces::Response& response);
+  bool halt(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool set_disabled_channels(dmf_sim::SetDisabledChannels::Request& request,
+                             dmf_sim::SetDisabledChannels::Response& response);
+  bool detect_shorts(dmf_sim::DetectShorts::Request& request, dmf_sim::DetectShorts::Response& response);
+  bool inject_fault(dmf_sim::InjectFault::Request& request, dmf_sim::InjectFault::Response& response);
+  bool explain_droplet(dmf_sim::ExplainDroplet::Request& request,
+                       dmf_sim::ExplainDroplet::Response& response);
   bool pause(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool unpause(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool step(dmf_sim::Step::Request& request, dmf_sim::Step::Response& response);

@@ -36,6 +36,58 @@ TEST_F(ConvertTest, StateHoldsSiAndReducedTime) {
   EXPECT_EQ(state.state_hash, "") << "nobody asked for it";
 }
 
+TEST_F(ConvertTest, AHaltedRailIsToldEverywhere) {
+  frame_->rail = {63, 1000, false, "over-current: channel 2 is shorted"};
+  frame_->electrodes[2].disabled = true;
+  EXPECT_EQ(to_state(*frame_, context_).halted, "over-current: channel 2 is shorted");
+  const auto rail = to_diagnostics(*frame_, context_).status.at(1);
+  EXPECT_EQ(rail.level, diagnostic_msgs::DiagnosticStatus::ERROR);
+  EXPECT_EQ(rail.message, "halted: over-current: channel 2 is shorted");
+  const auto electrodes = to_electrodes(*frame_).electrodes;
+  EXPECT_TRUE(electrodes[2].disabled);
+  EXPECT_FALSE(electrodes[1].disabled);
+}
+
+TEST_F(ConvertTest, CapacitanceNamesItsChannels) {
+  CapacitanceNote note;
+  note.stamp = 1'500'000'000;
+  note.run = 4;
+  note.time = 3;
+  note.reading = {300, {1e-15, 2e-15, 3e-15, 4e-15}};
+  const auto message = to_capacitance(note, context_);
+  EXPECT_EQ(message.header.stamp, ros::Time(1, 500000000));
+  EXPECT_EQ(message.run, 4u);
+  EXPECT_EQ(message.step, 300u);
+  EXPECT_DOUBLE_EQ(message.time, 3 * 4e-6);
+  EXPECT_EQ(message.channels, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(message.capacitance[2], 3e-15);
+}
+
+TEST_F(ConvertTest, AnExplanationIsInSiUnits) {
+  const double newton = 3e-13 * 5 * 5 / 2e-5;  // of k_BT / r_c
+  chip::DropletExplanation explanation;
+  explanation.driving_force = {3, -4};
+  explanation.side_forces = {1, 2, -3, 4};
+  explanation.opposing_force = 6;
+  explanation.channels = {0, 1};
+  explanation.nearest_channel = 1;
+  explanation.nearest_distance = 2;
+  const auto response = to_response(explanation, context_);
+  EXPECT_DOUBLE_EQ(response.driving_force.x, 3 * newton);
+  EXPECT_DOUBLE_EQ(response.driving_force.y, -4 * newton);
+  EXPECT_DOUBLE_EQ(response.driving_force_mdpd, 5);
+  EXPECT_DOUBLE_EQ(response.opposing_force, 6 * newton);
+  ASSERT_EQ(response.side_forces.size(), 4u);
+  EXPECT_DOUBLE_EQ(response.side_forces[2], -3 * newton);
+  EXPECT_DOUBLE_EQ(response.nearest_distance, 4e-5);
+  EXPECT_TRUE(response.has_nearest_channel);
+  EXPECT_TRUE(std::isnan(response.needed_voltage)) << "no voltage would do";
+  explanation.needed_voltage = 32;
+  explanation.nearest_channel.reset();
+  EXPECT_EQ(to_response(explanation, context_).needed_voltage, 32);
+  EXPECT_FALSE(to_response(explanation, context_).has_nearest_channel);
+}
+
 TEST_F(ConvertTest, HashIsSixteenHexDigits) {
   auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
   snapshot->state_hash = 0xab;
