@@ -146,7 +146,30 @@ class Explainer {
     result_.needed_voltage = std::min(std::ceil(enough / kVoltageStep) * kVoltageStep, law_.max_voltage);
   }
 
+  bool sits() const { return distance(centroid(footprint_), electrode(*nearest_).outline) == 0; }
+
+  /// The actuated electrode nearest to the footprint of those that it does not reach, in words.
+  std::string next_one() const {
+    std::optional<std::size_t> next;
+    double away = 0;
+    for (std::size_t index = 0; index < scene_.layout.electrodes().size(); ++index) {
+      if (!actuated(index)) continue;
+      const double between = distance(electrode(index).outline, footprint_);
+      if (between <= 0 || (next && between >= away)) continue;
+      next = index;
+      away = between;
+    }
+    if (!next) return "";
+    return fmt::format("; the next one that is, channel {}, is {} away", electrode(*next).channel,
+                       in_mm(away));
+  }
+
+  std::string in_mm(double reduced) const {
+    return fmt::format("{:.3g} mm", reduced * scene_.units.length_m * 1e3);
+  }
+
   std::string would_do() const {
+    if (!result_.needed_voltage && sits()) return "";
     if (!result_.needed_voltage) return fmt::format("; no voltage up to {:g} V would do", law_.max_voltage);
     return fmt::format("; {:.4g} V would do", *result_.needed_voltage);
   }
@@ -163,8 +186,8 @@ class Explainer {
     if (board_.disconnected()) return "does not move: the chip is disconnected";
     if (!nearest_) return "does not move: it sits on all actuated electrodes";
     if (!reaches()) {
-      return fmt::format("does not move: its footprint does not reach channel {} ({:.3g} mm away)", channel(),
-                         result_.nearest_distance * scene_.units.length_m * 1e3);
+      return fmt::format("does not move: its footprint does not reach channel {} ({} away)", channel(),
+                         in_mm(result_.nearest_distance));
     }
     const std::string lack = lack_of_voltage();
     if (!lack.empty()) return "does not move: " + lack;
@@ -173,8 +196,8 @@ class Explainer {
       return fmt::format("is pulled towards channel {}{}; {}", channel(), unasked, force_text());
     }
     if (board_.charging()) return fmt::format("does not move yet: channel {} is charging", channel());
-    if (distance(centroid(footprint_), electrode(*nearest_).outline) == 0)
-      return fmt::format("does not move: it sits on channel {}, which is actuated", channel());
+    if (sits())
+      return fmt::format("does not move: it sits on channel {}, which is actuated", channel()) + next_one();
     return fmt::format(
                "does not move: the pull of channel {} at {:.4g} V does not exceed that of the other sides",
                channel(), board_.voltage(*nearest_)) +

@@ -164,6 +164,12 @@ TEST(DropletExplanation, ARailThatIsOffIsCalledByName) {
 TEST(DropletExplanation, ADropletOnItsElectrodesHasNowhereToGo) {
   EXPECT_EQ(explained(-6, {SetHv{63, 0, true}, SetElectrodes{{1}}}).message,
             "droplet 2 does not move: it sits on channel 1, which is actuated");
+  EXPECT_EQ(
+      explained(-6, {SetHv{63, 0, true}, SetElectrodes{{1, 2, 3}}}).message,
+      "droplet 2 does not move: it sits on channel 1, which is actuated; the next one that is, channel 2, is "
+      "0.015 mm away");  // from -1 to 0.5
+  EXPECT_EQ(explained(-6, {SetHv{63, 0, false}, SetElectrodes{{1}}}).message,
+            "droplet 2 does not move: the rail is disabled");
   const DropletExplanation between = explained(-12, {SetHv{63, 0, true}, SetElectrodes{{0, 1}}});
   EXPECT_NEAR(between.driving_force.norm(), 0, 0.01);
   EXPECT_TRUE(
