@@ -41,13 +41,13 @@ void Experiment::State::play_due(Sequence& sequence) {
 std::string Experiment::State::carry_out(const SetElectrodes& command) {
   const std::string halted = change_board(command);
   const Board& board = run->board;
-  std::vector<std::uint32_t> on, left_out;
+  std::vector<std::uint32_t> on;
   for (const std::uint32_t channel : command.channels) {
-    (board.is_disabled(scene->layout.index_of(channel)) ? left_out : on).push_back(channel);
+    if (!board.is_disabled(scene->layout.index_of(channel))) on.push_back(channel);
   }
   std::string message =
       on.empty() ? "all channels off" : fmt::format("channels on: {}; all others off", fmt::join(on, ", "));
-  if (!left_out.empty()) message += fmt::format("; disabled and left out: {}", fmt::join(left_out, ", "));
+  message += left_out(command.channels);
   if (!halted.empty()) return message + halted;
   if (!on.empty() && !board.rail().enabled) {
     message += "; the rail is disabled, so no pad has a voltage";
@@ -73,7 +73,7 @@ std::string Experiment::State::carry_out(const SetElectrodeVoltages& command) {
   const std::string halted = change_board(command);
   return fmt::format("channels {} driven past the rail until the next set_electrodes",
                      fmt::join(command.channels, ", ")) +
-         halted;
+         left_out(command.channels) + halted;
 }
 
 std::string Experiment::State::carry_out(const SetWettability& command) {
@@ -148,6 +148,15 @@ std::string Experiment::State::carry_out(const SetBodyForces& command) {
 std::string Experiment::State::carry_out(const Reset&) {
   start();
   return "back at the start of the scene";
+}
+
+std::string Experiment::State::left_out(const std::vector<std::uint32_t>& channels) const {
+  std::vector<std::uint32_t> disabled;
+  for (const std::uint32_t channel : channels) {
+    if (run->board.is_disabled(scene->layout.index_of(channel))) disabled.push_back(channel);
+  }
+  if (disabled.empty()) return "";
+  return fmt::format("; disabled and left out: {}", fmt::join(disabled, ", "));
 }
 
 std::vector<std::uint32_t> Experiment::State::channels_where(bool (Board::*holds)(std::size_t) const) const {

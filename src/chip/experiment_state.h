@@ -70,6 +70,8 @@ struct Experiment::State {
   void protect_if_due();
   void note(BoardEvent::Kind kind, const std::string& message);
 
+  /// "; disabled and left out: 2, 3" for those of these channels that are; else nothing.
+  std::string left_out(const std::vector<std::uint32_t>& channels) const;
   std::vector<std::uint32_t> channels_where(bool (Board::*holds)(std::size_t) const) const;
   bool sensing_due() const;
   /// F, of each pad as it is.

@@ -129,7 +129,7 @@ TEST(DisabledChannels, NeverCarryAVoltage) {
   EXPECT_EQ(reply.applied_channels, (Channels{0}));
   EXPECT_TRUE(holds(reply.message, "channels on: 0; all others off; disabled and left out: 1"));
   EXPECT_TRUE(chip.electrodes()[1].disabled);
-  chip.apply(SetElectrodeVoltages{{2}, {30}});
+  EXPECT_TRUE(holds(chip.apply(SetElectrodeVoltages{{2}, {30}}).message, "disabled and left out: 2"));
   chip.apply(InjectFault{fault::kStuckOn, 1});
   EXPECT_EQ(voltages(chip), (std::vector<double>{63, 0, 0}));
   EXPECT_TRUE(chip.apply(SetDisabledChannels{}).disabled_channels.empty());
