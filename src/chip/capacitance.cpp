@@ -14,7 +14,7 @@ double liquid_capacitance(const Scene& scene) {
 
 double filler_capacitance(const Scene& scene) {
   const engine::Domain& domain = scene.parameters.domain;
-  if (domain.upper_side[2] != engine::Side::wall) return 0;
+  if (!domain.has_top_plate()) return 0;
   const double gap = domain.size().z() * scene.units.length_m;
   const double filler = kVacuumPermittivity * scene.sensing.filler_permittivity / gap;
   const double dielectric = liquid_capacitance(scene);

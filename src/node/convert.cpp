@@ -264,7 +264,7 @@ dmf_sim::Layout to_layout(const ConversionContext& context) {
     layout.electrodes.push_back(message);
   }
   const engine::Domain& domain = scene.parameters.domain;
-  if (domain.upper_side[2] == engine::Side::wall) layout.plate_gap = domain.size().z() * length;
+  if (domain.has_top_plate()) layout.plate_gap = domain.size().z() * length;
   const chip::Electrowetting& law = scene.electrowetting;
   layout.max_voltage = law.max_voltage;
   layout.reference_voltage = law.reference_voltage;

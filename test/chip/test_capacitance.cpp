@@ -98,6 +98,40 @@ TEST(Capacitance, BetweenTwoPlatesTheFillerCountsToo) {
   EXPECT_NEAR(wet[4], kLiquid * 121, 1e-18);
 }
 
+// A pancake of volume V between plates h of liquid apart has the cross-section V / h on the mean over its
+// height. Its rim bulges by (h / 2) (1 - sin 110) / -cos 110 = 0.176 h over the contact line, two thirds of
+// it on the mean.
+TEST(Capacitance, OfAPancakeFollowsItsContactArea) {
+  const auto closed = [](double x, double y) {
+    return parse_scene(
+        fmt::format("domain: {{lower: [-20, -20, 0], upper: [20, 20, 4], sides: {{z: plates}}}}\n"
+                    "wettability: {{rest_angle: 110, top_angle: 110}}\n"
+                    "chip:\n"
+                    "  gap: 1\n"
+                    "  grids: [{{origin: [-12, -12], columns: 3, rows: 3, pitch: 12}}]\n"
+                    "  electrowetting: {{reference_angle: 60, saturation_angle: 55}}\n"
+                    "  sensing: {{noise: 0 F, offset: 0 F}}\n"
+                    "droplets: [{{center: [{}, {}], fills: 1.6}}]\n",
+                    x, y),
+        "scene.yaml");
+  };
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {6.0, 2.0}, {-5.0, 6.5}}) {
+    Experiment chip(closed(x, y), {1, "auto"});
+    run(chip, 300);
+    const double height = engine::liquid_height(chip.scene().parameters);
+    const double mean = std::sqrt(chip.observe()->droplets.at(0).volume / (M_PI * height));
+    const double radius = mean - 2.0 / 3 * 0.176 * height;
+    const double liquid = liquid_capacitance(chip.scene()) * chip.scene().units.area_m2();
+    const double filler = filler_capacitance(chip.scene()) * chip.scene().units.area_m2();
+    const auto reading = chip.sense().capacitance;
+    for (std::size_t pad = 0; pad < reading.size(); ++pad) {
+      const double area = circle_on_pad(x, y, radius, chip.scene().layout.electrodes()[pad]);
+      EXPECT_NEAR((reading[pad] - filler * 121) / (liquid - filler), area, 0.05 * 121)
+          << "pad " << pad << " at " << x << ", " << y;
+    }
+  }
+}
+
 TEST(Capacitance, AWettedAreaCountsOnlyWhereAPadIs) {
   // Cells of 1 r_c; pad 0 reaches from -17.5 to -6.5: half of the cell from -18 to -17 is on it.
   const PadCapacitance pads(scene(0, 0));
