@@ -21,6 +21,7 @@ constexpr float kSeeThrough = 0.25f;  // opacity of a droplet with something ins
 
 // Lengths in r_c.
 constexpr double kPlateThickness = 1.0;
+constexpr double kTopPlateThickness = 0.3;
 constexpr double kPadHeight = 0.05;    // above the plate, so that neither flickers through the other
 constexpr double kBeadDiameter = 0.8;  // beads of a dense liquid just touch: it shows as a closed surface
 constexpr double kLabelGap = 2.0;      // from the top of a droplet to its label
@@ -81,6 +82,17 @@ Marker plate(const Frame& frame, const ConversionContext& context) {
   result.scale.y = s * size.y();
   result.scale.z = s * kPlateThickness;
   result.color = color(0.16, 0.2, 0.24);
+  return result;
+}
+
+/// Glass, thin enough to look under.
+Marker top_plate(const Frame& frame, const ConversionContext& context) {
+  Marker result = plate(frame, context);
+  result.ns = "top_plate";
+  result.scale.z = context.display_length() * kTopPlateThickness;
+  result.pose.position.z =
+      context.display_length() * context.scene.parameters.domain.upper.z() + 0.5 * result.scale.z;
+  result.color = color(0.7, 0.85, 1.0, 0.12);
   return result;
 }
 
@@ -216,6 +228,7 @@ Marker beads(const char* name_space, std::uint32_t id, const std_msgs::ColorRGBA
 MarkerArray chip_markers(const Frame& frame, const ConversionContext& context) {
   MarkerArray array;
   array.markers.push_back(plate(frame, context));
+  if (context.scene.parameters.domain.has_top_plate()) array.markers.push_back(top_plate(frame, context));
   const auto& electrodes = context.scene.layout.electrodes();
   for (std::size_t i = 0; i < electrodes.size(); ++i) {
     array.markers.push_back(pad(electrodes[i], frame.electrodes.at(i).voltage, frame, context));

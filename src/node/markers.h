@@ -8,12 +8,12 @@
 #include "node/frame.h"
 
 /// From frames to what RViz draws: pure functions. All in frame chip, scaled by the display scale. Namespaces
-/// and ids are stable: plate (0), electrodes and electrode_labels (channel), droplets and droplet_labels
-/// (droplet id), microparticles (microparticle id), vapour (0).
+/// and ids are stable: plate (0), top_plate (0), electrodes and electrode_labels (channel), droplets and
+/// droplet_labels (droplet id), microparticles (microparticle id), vapour (0).
 namespace dmf::node {
 
-/// The plate, each electrode coloured by its voltage (grey 0 V, orange at the board's limit), its channel
-/// number.
+/// The plate and the top plate over it, each electrode coloured by its voltage (grey 0 V, orange at the
+/// board's limit), its channel number.
 visualization_msgs::MarkerArray chip_markers(const Frame& frame, const ConversionContext& context);
 
 /// Each droplet as the spheres of its beads, coloured by id, see-through while it carries a microparticle,

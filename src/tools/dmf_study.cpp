@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
       {"forces", study_forces},
       {"inner_flow", study_inner_flow},
       {"plates", study_plates},
-      {"splitting", study_splitting}};
+      {"splitting", study_splitting},
+      {"transport_velocity", study_transport_velocity}};
   std::string transport_titles;
   for (const StudyTitle& study : transport_studies()) {
     studies[study.name] = [name = study.name](const StudyOptions& options) {
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"
       "  splitting        between two plates: up to which gap over pitch a droplet splits\n"
+      "  transport_velocity  how fast a droplet moves along electrodes under what voltage\n"
       "Microparticles:\n"
       "  microparticle_angle  attraction -> contact angle, floating in a film; writes microparticle.yaml\n" +
       transport_titles +

@@ -115,5 +115,6 @@ void study_forces(const StudyOptions& options);
 void study_inner_flow(const StudyOptions& options);
 void study_plates(const StudyOptions& options);
 void study_splitting(const StudyOptions& options);
+void study_transport_velocity(const StudyOptions& options);
 
 }  // namespace dmf::tools
