@@ -96,6 +96,8 @@ void Run::restore(const Json& saved, const engine::ContactAngleCurve& curve) {
     const Json& charge = saved["charge"];
     restored.set_charge(
         {charge.at("step").get<std::uint64_t>(), charge.at("numbers").get<std::vector<double>>()});
+  } else {
+    restored.settle();
   }
   show(restored);
   schedule.next = saved.at("schedule_next").get<std::size_t>();

@@ -112,6 +112,21 @@ TEST(PadCharging, ASavedRunGoesOnWithTheSameBits) {
   EXPECT_TRUE(state_of(again) == state_of(chip));
 }
 
+TEST(PadCharging, ASavedRunWhosePadsHaveArrivedKeepsThemThere) {
+  Experiment chip = start();
+  chip.apply(SetHv{63, 0, true});
+  chip.apply(SetElectrodes{{1}});
+  run(chip, 600);
+  Experiment other = start();
+  other.load(chip.save());
+  EXPECT_EQ(other.electrodes()[1].contact_angle, chip.electrodes()[1].contact_angle);
+  for (Experiment* each : {&chip, &other}) {
+    each->apply(SetElectrodes{});
+    run(*each, 30);
+  }
+  EXPECT_TRUE(state_of(other) == state_of(chip));
+}
+
 TEST(PadCharging, ADamagedChargeIsRefused) {
   Experiment chip = start();
   chip.apply(SetHv{63, 0, true});
