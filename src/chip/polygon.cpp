@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <boost/geometry.hpp>
+#include <boost/geometry/geometries/multi_polygon.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
 #include <boost/geometry/geometries/ring.hpp>
 #include <cmath>
 #include <limits>
@@ -46,8 +48,6 @@ Polygon counter_clockwise(Polygon polygon) {
   return polygon;
 }
 
-double area(const Polygon& polygon) { return geometry::area(ring(polygon)); }
-
 Eigen::Vector2d centroid(const Polygon& polygon) {
   Point centre(0, 0);
   geometry::centroid(ring(polygon), centre);
@@ -58,6 +58,42 @@ Eigen::AlignedBox2d bounding_box(const Polygon& polygon) {
   Eigen::AlignedBox2d box;
   for (const auto& corner : polygon) box.extend(corner);
   return box;
+}
+
+double area(const Polygon& polygon) { return std::abs(geometry::area(ring(polygon))); }
+
+std::vector<Polygon> drawn_in(const Polygon& polygon, double width) {
+  namespace buffer = geometry::strategy::buffer;
+  using Piece = geometry::model::polygon<Point, kClockwise, kClosed>;
+  geometry::model::multi_polygon<Piece> pieces;
+  // Mitred: the corners of a square stay corners.
+  geometry::buffer(Piece{ring(counter_clockwise(polygon))}, pieces,
+                   buffer::distance_symmetric<double>(-width), buffer::side_straight(), buffer::join_miter(),
+                   buffer::end_flat(), buffer::point_square());
+  std::vector<Polygon> outlines;
+  for (const Piece& piece : pieces) {
+    Polygon& outline = outlines.emplace_back();
+    for (const Point& corner : piece.outer()) outline.emplace_back(corner.x(), corner.y());
+  }
+  return outlines;
+}
+
+std::size_t crossings(const Polygon& a, const Polygon& b) {
+  const auto side = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& of) {
+    return (to.x() - from.x()) * (of.y() - from.y()) - (to.y() - from.y()) * (of.x() - from.x());
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d &from = a[i], &to = a[(i + 1) % a.size()];
+    double last = side(from, to, b.back());
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const double now = side(from, to, b[j]);
+      const Eigen::Vector2d& before = b[(j + b.size() - 1) % b.size()];
+      if (last * now < 0 && side(before, b[j], from) * side(before, b[j], to) < 0) ++count;
+      last = now;
+    }
+  }
+  return count;
 }
 
 double shared_area(const Polygon& a, const Polygon& b) {

@@ -14,10 +14,15 @@ using Polygon = std::vector<Eigen::Vector2d>;
 std::string polygon_fault(const Polygon& polygon);
 /// The same corners counter-clockwise.
 Polygon counter_clockwise(Polygon polygon);
-/// Of a sound polygon, counter-clockwise.
-double area(const Polygon& polygon);
 Eigen::Vector2d centroid(const Polygon& polygon);
 Eigen::AlignedBox2d bounding_box(const Polygon& polygon);
+/// Of a sound polygon, either way round.
+double area(const Polygon& polygon);
+/// What is left of a sound polygon when its edge moves inwards by a width > 0: several pieces where it is
+/// narrow, none where it is narrower than twice the width.
+std::vector<Polygon> drawn_in(const Polygon& polygon, double width);
+/// How often the edges of two polygons cross, touching not counted.
+std::size_t crossings(const Polygon& a, const Polygon& b);
 /// Area that two sound polygons, both counter-clockwise, share.
 double shared_area(const Polygon& a, const Polygon& b);
 /// Between two sound polygons, 0 when they touch or overlap.

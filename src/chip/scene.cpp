@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
@@ -89,9 +90,10 @@ Scene read_scene(YamlReader root, const std::string& source) {
   scene.description = root.text("description", "");
 
   scene.parameters.liquid = read_liquid(root);  // the units are matched with it
-  scene.units = read_units(root, scene.parameters.liquid);
+  scene.board = read_board(root, source);       // and a board's size decides about one r_c
+  scene.units = read_units(root, scene.parameters.liquid, scene.board);
   root.set_units(scene.units);
-  read_engine(root, scene.parameters);
+  read_engine(root, scene.parameters, scene.board);
   scene.settle_time = root.quantity("settle_time", Dimension::time, Range::at_least(0), 0.0);
   scene.default_duration = root.quantity("duration", Dimension::time, Range::at_least(0), 100.0);
 
@@ -141,6 +143,22 @@ engine::ContactAngleCurve load_microparticle_curve(const Scene& scene) {
 Scene load_scene(const std::string& file) {
   const std::string path = find_config("scenes", file);
   return read_scene(YamlReader::load(path), path);
+}
+
+Scene load_board(const std::string& file, double resolution, const std::string& file_unit) {
+  BoardFileOptions options;
+  if (const auto unit = engine::parse_quantity(file_unit, Dimension::length); unit && !unit->bare) {
+    options.unit_m = unit->value;
+  }
+  // What is wrong with the file itself is told without a word about scenes.
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::absolute(file, error);
+  if (std::filesystem::exists(path, error)) read_board_file(file, options);
+  // JSON text is YAML text, whatever the name has in it.
+  nlohmann::json chip{{"file", std::filesystem::exists(path, error) ? path.string() : file},
+                      {"resolution", resolution}};
+  if (!file_unit.empty()) chip["file_unit"] = file_unit;
+  return read_scene(YamlReader::parse(nlohmann::json{{"chip", chip}}.dump(), file), file);
 }
 
 Scene parse_scene(const std::string& yaml, const std::string& name) {

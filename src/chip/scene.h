@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "chip/board_file.h"
 #include "chip/command.h"
 #include "chip/electrowetting.h"
 #include "chip/layout.h"
@@ -34,6 +35,15 @@ struct ScheduledCommand {
   Command command;
 };
 
+/// The board file that a scene takes its electrodes from, and how finely it is simulated.
+struct SceneBoard {
+  std::string path;        ///< of the file, as found
+  BoardFile file;          ///< in metres
+  double resolution = 10;  ///< r_c per pitch
+
+  double length_m() const { return file.pitch_m / resolution; }  ///< one r_c, m
+};
+
 /// What one YAML file under config/scenes says: the same for the node, dmf_run, tests and benchmarks.
 struct Scene {
   std::string name;
@@ -45,6 +55,7 @@ struct Scene {
   Electrowetting electrowetting;
   Rail rail;
   Sensing sensing;
+  std::optional<SceneBoard> board;        ///< where the layout comes from a board file
   Layout layout;                          ///< inside the domain
   std::optional<SetWettability> program;  ///< shown from the start, as if commanded before the first step
   double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
@@ -75,7 +86,12 @@ engine::ContactAngleCurve load_microparticle_curve(const Scene& scene);
 /// @throws engine::InvalidInput listing *all* violations, each "file:line: key: value, allowed: ...".
 Scene load_scene(const std::string& file);
 
-/// Same from text, for tests; `name` stands for the file in messages.
+/// A scene that is a board file and nothing else: no droplets, all else as a scene has it by default.
+/// @param file_unit  what one unit of the file is ("1 mm"), empty when the file says so itself.
+/// @throws engine::InvalidInput as load_scene.
+Scene load_board(const std::string& file, double resolution, const std::string& file_unit);
+
+/// A scene from text, for tests; `name` stands for the file in messages.
 Scene parse_scene(const std::string& yaml, const std::string& name);
 
 }  // namespace dmf::chip

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include "chip/capacitance.h"
 #include "chip/command_reader.h"
@@ -38,16 +37,25 @@ constexpr double kOffsetShare = 0.05;
 constexpr std::uint64_t kAnyInteger = std::numeric_limits<std::uint32_t>::max();
 
 Eigen::Vector3d read_corner(const YamlReader& domain, const std::string& key,
-                            const Eigen::Vector3d& otherwise) {
+                            const Eigen::Vector3d& otherwise, bool may_lack) {
+  if (may_lack && !domain.has(key)) return otherwise;
   const auto corner = domain.quantities(key, Dimension::length, {}, {3, 3});
   return corner.size() == 3 ? Eigen::Vector3d(corner[0], corner[1], corner[2]) : otherwise;
 }
 
-Domain read_domain(const YamlReader& root) {
+Domain read_domain(const YamlReader& root, const std::optional<SceneBoard>& board) {
   Domain domain;
+  if (board) {
+    domain = domain_around(*board);
+    if (!root.has("domain")) return domain;
+  }
   const YamlReader section = root.mapping("domain");
-  domain.lower = read_corner(section, "lower", domain.lower);
-  domain.upper = read_corner(section, "upper", domain.upper);
+  domain.lower = read_corner(section, "lower", domain.lower, board.has_value());
+  domain.upper = read_corner(section, "upper", domain.upper, board.has_value());
+  if (board && section.has("height")) {
+    if (section.has("upper")) section.report("height", "given together with upper, allowed: one of both");
+    domain.upper.z() = domain.lower.z() + section.quantity("height", Dimension::length, Range::above(0));
+  }
   const auto sides = section.optional_mapping("sides");
   if (!sides) return domain;
   constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
@@ -61,19 +69,6 @@ Domain read_domain(const YamlReader& root) {
     domain.lower_side[axis] = word == "wall" ? Side::wall : domain.upper_side[axis];
   }
   return domain;
-}
-
-/// Adds what a constructor or a look-up refused to the violations of a key.
-template <typename Action>
-bool attempt(const YamlReader& reader, const std::string& key, const Action& action) {
-  try {
-    action();
-    return true;
-  } catch (const engine::InvalidInput& refusal) {
-    std::istringstream lines(refusal.what());
-    for (std::string line; std::getline(lines, line);) reader.report(key, line);
-    return false;
-  }
 }
 
 engine::MicroparticleParameters read_microparticle_model(const YamlReader& root) {
@@ -209,6 +204,21 @@ void check_on_plate(const YamlReader& chip, const Layout& layout, const Domain& 
   }
 }
 
+/// [x, y] or [x, y, z], empty after noting what is wrong. A droplet on an electrode stands over its centroid.
+std::vector<double> read_droplet_centre(const YamlReader& section, const Scene& scene) {
+  if (!section.has("electrode")) return section.quantities("center", Dimension::length, {}, {2, 3});
+  if (section.has("center")) section.report("electrode", "given together with center, allowed: one of both");
+  const auto channel = static_cast<std::uint32_t>(section.integer("electrode", 0, kMaxChannel));
+  std::vector<double> centre;
+  // Without the board's file every channel would be told as missing.
+  if (scene.board && scene.board->file.electrodes.empty()) return centre;
+  attempt(section, "electrode", [&] {
+    const Vector2d at = scene.layout.electrodes()[scene.layout.index_of(channel)].centroid;
+    centre = {at.x(), at.y()};
+  });
+  return centre;
+}
+
 }  // namespace
 
 LiquidParameters read_liquid(const YamlReader& root) {
@@ -228,11 +238,18 @@ LiquidParameters read_liquid(const YamlReader& root) {
   return liquid;
 }
 
-engine::Units read_units(const YamlReader& root, const LiquidParameters& liquid) {
-  double length = 10e-6;           // m
-  double density = 1000;           // kg/m^3, water
-  double surface_tension = 0.072;  // N/m, water in air at 25 degrees C
+engine::Units read_units(const YamlReader& root, const LiquidParameters& liquid,
+                         const std::optional<SceneBoard>& board) {
+  double length = board ? board->length_m() : 10e-6;  // m
+  double density = 1000;                              // kg/m^3, water
+  double surface_tension = 0.072;                     // N/m, water in air at 25 degrees C
   if (const auto section = root.optional_mapping("units")) {
+    for (const char* key : {"preset", "length"}) {
+      if (board && section->has(key)) {
+        section->report(
+            key, "given together with chip.file, allowed: chip.resolution, from which the length follows");
+      }
+    }
     if (section->has("preset")) {
       section->choice("preset", {"lan2016"});
       return engine::Units::lan2016();
@@ -246,13 +263,14 @@ engine::Units read_units(const YamlReader& root, const LiquidParameters& liquid)
                                  liquid.surface_tension);
 }
 
-void read_engine(const YamlReader& root, engine::Parameters& parameters) {
+void read_engine(const YamlReader& root, engine::Parameters& parameters,
+                 const std::optional<SceneBoard>& board) {
   if (const auto wall = root.optional_mapping("wall")) {
     parameters.wall.lattice_constant = wall->number("lattice_constant", {}, parameters.wall.lattice_constant);
     parameters.wall.layers =
         static_cast<int>(wall->integer("layers", 0, kMaxPerSide, parameters.wall.layers));
   }
-  parameters.domain = read_domain(root);
+  parameters.domain = read_domain(root, board);
   parameters.microparticles = read_microparticle_model(root);
   parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
   parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
@@ -305,10 +323,20 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
   read_electrowetting(*chip, scene, scene.electrowetting);
 
-  const double gap = chip->quantity("gap", Dimension::length, Range::above(0));
+  std::optional<double> usual_gap;
+  if (scene.board) usual_gap = default_gap(*scene.board);
+  const double gap = chip->quantity("gap", Dimension::length, Range::above(0), usual_gap);
   if (gap <= 0) return false;
   std::vector<Electrode> electrodes;
   bool sound = true;
+  if (scene.board) {
+    if (scene.board->file.electrodes.empty()) return false;
+    for (const char* key : {"grids", "polygons"}) {
+      if (chip->has(key)) chip->report(key, "given together with file, allowed: one of both");
+    }
+    sound = attempt(*chip, "file",
+                    [&] { electrodes = electrodes_of(scene.board->file, scene.board->length_m(), gap); });
+  }
   for (const YamlReader& grid : chip->mappings("grids")) sound &= read_grid(grid, gap, electrodes);
   for (const YamlReader& polygon : chip->mappings("polygons")) electrodes.push_back(read_polygon(polygon));
   if (electrodes.empty() && sound) {
@@ -326,7 +354,7 @@ bool read_chip(const YamlReader& root, Scene& scene) {
 void read_droplets(const YamlReader& root, Scene& scene) {
   const Domain& domain = scene.parameters.domain;
   for (const YamlReader& section : root.mappings("droplets")) {
-    const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
+    const auto centre = read_droplet_centre(section, scene);
     const bool fills = section.has("fills");
     if (fills && (section.has("radius") || section.has("volume")))
       section.report("fills", "given together with radius or volume, allowed: one of the three");

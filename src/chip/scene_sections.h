@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <sstream>
+#include <string>
 
 #include "chip/scene.h"
 #include "engine/yaml_reader.h"
@@ -9,14 +11,37 @@ namespace dmf::chip {
 /// Name of Lan's own formula among the calibrations, of the wall and of microparticles.
 constexpr const char* kLanFormula = "lan2016";
 
+/// Adds what a constructor or a look-up refused to the violations of a key.
+template <typename Action>
+bool attempt(const engine::YamlReader& reader, const std::string& key, const Action& action) {
+  try {
+    action();
+    return true;
+  } catch (const engine::InvalidInput& refusal) {
+    std::istringstream lines(refusal.what());
+    for (std::string line; std::getline(lines, line);) reader.report(key, line);
+    return false;
+  }
+}
+
 /// The sections of a scene file, each from the file's root. They note what is wrong in the reader and never
 /// throw; docs/scene_format.md lists the keys. A section may use what the ones before it have read.
 
 engine::LiquidParameters read_liquid(const engine::YamlReader& root);
-/// `units`: by default those of water whose r_c is 10 um.
-engine::Units read_units(const engine::YamlReader& root, const engine::LiquidParameters& liquid);
-/// Wall, domain, what microparticles share and how to compute; then checks every range of the engine.
-void read_engine(const engine::YamlReader& root, engine::Parameters& parameters);
+/// `chip.file`: the board file that the scene names, if it does. @param scene_file  which a path counts from.
+/// After noting that it can't be had: a stand-in without electrodes.
+std::optional<SceneBoard> read_board(const engine::YamlReader& root, const std::string& scene_file);
+/// `units`: by default those of water whose r_c is 10 um, or what the board's resolution makes of it.
+engine::Units read_units(const engine::YamlReader& root, const engine::LiquidParameters& liquid,
+                         const std::optional<SceneBoard>& board);
+/// Wall, domain, what microparticles share and how to compute; then checks every range of the engine. A board
+/// has a domain of its own.
+void read_engine(const engine::YamlReader& root, engine::Parameters& parameters,
+                 const std::optional<SceneBoard>& board);
+/// The domain of a board for which the scene gives none.
+engine::Domain domain_around(const SceneBoard& board);
+/// The gap of a board for which the scene gives none, r_c.
+double default_gap(const SceneBoard& board);
 /// Calibration, rest angle and initial program. @returns the calibration curve unless it can't be read.
 std::optional<engine::ContactAngleCurve> read_wettability(const engine::YamlReader& root, Scene& scene);
 /// Electrodes and electrowetting. @returns false when there is no sound layout.

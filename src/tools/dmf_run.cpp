@@ -16,7 +16,10 @@ int main(int argc, char** argv) {
   CLI::App app("Runs a scene of dmf_sim without ROS, by the scene's own schedule.");
   tools::RunOptions options;
   bool explain_only = false, hash = false;
-  app.add_option("scene", options.scene, "name in config/scenes, or a file")->required();
+  double resolution = 10;
+  std::string file_unit;
+  app.add_option("scene", options.scene, "name in config/scenes, or a file; with --explain a board file too")
+      ->required();
   auto* steps = app.add_option("--steps", options.steps, "steps in all, from the scene's start");
   app.add_option("--until", options.until, "time to run to, tau")
       ->excludes(steps)
@@ -34,14 +37,24 @@ int main(int argc, char** argv) {
       ->needs(output);
   app.add_option("--resume", options.resume, "go on from the newest good checkpoint of this folder")
       ->check(CLI::ExistingDirectory);
-  app.add_flag("--explain", explain_only, "print what would be simulated, and stop");
+  auto* explain_flag =
+      app.add_flag("--explain", explain_only,
+                   "print what would be simulated, and stop; also of a board file (.json, .svg)");
+  app.add_option("--resolution", resolution, "with --explain of a board file: r_c per pitch")
+      ->needs(explain_flag)
+      ->capture_default_str();
+  app.add_option("--file-unit", file_unit,
+                 "with --explain of a board file: what one unit of it is, such as \"1 mm\"")
+      ->needs(explain_flag);
   app.add_flag("--hash", hash, "print the hash of the final state");
   app.add_flag("--json", options.json, "the last line is one JSON object");
   app.add_flag("--quiet", options.quiet, "no progress line");
   CLI11_PARSE(app, argc, argv);
   try {
     if (explain_only) {
-      fmt::print("{}", tools::explain(chip::load_scene(options.scene)));
+      fmt::print("{}", tools::explain(chip::is_board_file(options.scene)
+                                          ? chip::load_board(options.scene, resolution, file_unit)
+                                          : chip::load_scene(options.scene)));
       return 0;
     }
     const tools::RunResult result = tools::headless_run(options);

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
+#include "chip/polygon.h"
+#include "engine/droplet.h"
 #include "engine/simulation.h"
 
 namespace dmf::tools {
@@ -19,11 +24,124 @@ constexpr double typical_speed = 0.05;
 /// docs/performance.md.
 constexpr double bytes_per_moving_bead = 180, bytes_per_wall_bead = 30;
 
-std::string line(const char* name, double ours, double water) {
-  return fmt::format("  {:<46} {:>11.3g} {:>11.3g} {:>10.3g}\n", name, ours, water, ours / water);
+/// Beyond this factor two dimensionless numbers are not alike.
+constexpr double alike_within = 3;
+/// Below this a Bond number does not matter: gravity lowers a droplet by a twentieth of its height at most.
+constexpr double small_bond = 0.1;
+constexpr double pi = 3.14159265358979323846;
+
+bool alike(double a, double b) { return a < alike_within * b && b < alike_within * a; }
+
+std::string too(double ours, double waters, const char* more, const char* less) {
+  return ours > waters ? fmt::format("{:.2g} times too {}", ours / waters, more)
+                       : fmt::format("{:.2g} times too {}", waters / ours, less);
+}
+
+/// Beads of a droplet that fills one electrode: a sphere as wide as the pitch or, under a top plate, a column
+/// on a square of the pitch.
+double beads_on_one_electrode(const chip::Scene& scene, double pitch) {
+  const double volume = scene.parameters.domain.has_top_plate()
+                            ? pitch * pitch * engine::liquid_height(scene.parameters)
+                            : pi / 6 * pitch * pitch * pitch;
+  return volume * scene.parameters.liquid.bulk_density;
+}
+
+std::string about_electrodes(const chip::Scene& scene) {
+  const double mm = scene.units.length_m * 1e3;
+  std::string text;
+  if (scene.board) {
+    text +=
+        fmt::format("board        {}, {:.4g} r_c per pitch\n", scene.board->path, scene.board->resolution);
+  }
+  text += fmt::format("electrodes   {}", scene.layout.electrodes().size());
+  const auto pitch = pitch_of(scene);
+  if (!pitch) return text + "\n";
+  text += fmt::format(": channels {}\n", scene.layout.channels_text());
+  text += fmt::format("pitch        {:.4g} r_c = {:.4g} mm, gap {:.4g} r_c = {:.4g} mm\n", *pitch,
+                      *pitch * mm, scene.layout.gap(), scene.layout.gap() * mm);
+  const double beads = beads_on_one_electrode(scene, *pitch);
+  const double volume = beads / scene.parameters.liquid.bulk_density * mm * mm * mm;  // mm^3, which is ul
+  text += fmt::format("one electrode is filled by {:.0f} beads, {:.3g} ul\n", beads, volume);
+  return text;
 }
 
 }  // namespace
+
+std::vector<Likeness> likeness(const chip::Scene& scene, double radius, double speed) {
+  // Reduced units throughout for ours: a bead has mass 1, so mass density is bead density.
+  const engine::LiquidParameters& liquid = scene.parameters.liquid;
+  const double R = radius * scene.units.length_m, U = speed * scene.units.velocity_m_per_s();
+  const double g = scene.body_forces.gravity.norm();
+
+  Likeness ohnesorge{"Ohnesorge, viscosity / sqrt(density tension R)",
+                     liquid.viscosity / std::sqrt(liquid.bulk_density * liquid.surface_tension * radius),
+                     water_viscosity / std::sqrt(water_density * water_tension * R), ""};
+  Likeness capillary{"capillary, viscosity U / tension", liquid.viscosity * speed / liquid.surface_tension,
+                     water_viscosity * U / water_tension, ""};
+  // Between plates a droplet is as high as the liquid there, whatever its radius.
+  const bool pancake = scene.parameters.domain.has_top_plate();
+  const double half_height = pancake ? 0.5 * engine::liquid_height(scene.parameters) : radius;
+  const double half_height_m = half_height * scene.units.length_m;
+  Likeness bond{pancake ? "Bond, density g (height/2)^2 / tension" : "Bond, density g R^2 / tension",
+                liquid.bulk_density * g * half_height * half_height / liquid.surface_tension,
+                water_density * gravity * half_height_m * half_height_m / water_tension, ""};
+  Likeness reynolds{"Reynolds, density U R / viscosity",
+                    liquid.bulk_density * speed * radius / liquid.viscosity,
+                    water_density * U * R / water_viscosity, ""};
+  Likeness thermal{"thermal, k_BT / (tension R^2)",
+                   liquid.temperature / (liquid.surface_tension * radius * radius),
+                   thermal_energy / (water_tension * R * R), ""};
+
+  if (!alike(ohnesorge.simulated, ohnesorge.water)) {
+    ohnesorge.therefore =
+        fmt::format("viscosity damps {}: how fast a droplet starts, swings, splits and merges is not water's",
+                    too(ohnesorge.simulated, ohnesorge.water, "strongly", "weakly"));
+  }
+  if (!alike(capillary.simulated, capillary.water)) {
+    capillary.therefore = fmt::format(
+        "drag against capillary force is {} at this speed: travel times, dynamic angles and the voltage that "
+        "a speed "
+        "needs are not water's",
+        too(capillary.simulated, capillary.water, "large", "small"));
+  }
+  // Two Bond numbers that are both small are alike, whatever their ratio.
+  if (std::max(bond.simulated, bond.water) > small_bond && !alike(bond.simulated, bond.water)) {
+    bond.therefore =
+        bond.simulated < bond.water
+            ? "water's own weight would flatten a droplet of this size, and here it does not: heights, "
+              "footprints and what stands in a reservoir are not water's"
+            : "gravity flattens the droplet more than it would water";
+  }
+  if (!alike(reynolds.simulated, reynolds.water)) {
+    reynolds.therefore =
+        fmt::format("inertia is {} against viscosity: swirls, mixing and overshoot are not water's",
+                    too(reynolds.simulated, reynolds.water, "large", "small"));
+  }
+  if (thermal.simulated > 1e-3) {
+    thermal.therefore =
+        "the surface trembles by heat as water's does not: thin necks break and small droplets creep "
+        "by chance";
+  }
+  return {ohnesorge, capillary, bond, reynolds, thermal};
+}
+
+std::optional<double> pitch_of(const chip::Scene& scene) {
+  if (scene.board) return scene.board->resolution;
+  const auto& electrodes = scene.layout.electrodes();
+  if (electrodes.empty()) return std::nullopt;
+  if (electrodes.size() == 1) return std::sqrt(chip::area(electrodes[0].outline));
+  std::vector<double> nearest(electrodes.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < electrodes.size(); ++i) {
+    for (std::size_t j = i + 1; j < electrodes.size(); ++j) {
+      const double apart = (electrodes[i].centroid - electrodes[j].centroid).norm();
+      nearest[i] = std::min(nearest[i], apart);
+      nearest[j] = std::min(nearest[j], apart);
+    }
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  return *middle;
+}
 
 std::string explain(const chip::Scene& scene) {
   const engine::Parameters& parameters = scene.parameters;
@@ -33,7 +151,7 @@ std::string explain(const chip::Scene& scene) {
 
   double moving = 0, largest = 0;
   for (const auto& droplet : scene.droplets) {
-    moving += 4.0 / 3 * 3.14159265 * std::pow(droplet.radius, 3) * liquid.initial_density;
+    moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * liquid.initial_density;
     largest = std::max(largest, droplet.radius);
   }
   const double wall = parameters.domain.has_wall() ? 2 * parameters.wall.layers * size.x() * size.y() /
@@ -45,7 +163,7 @@ std::string explain(const chip::Scene& scene) {
                       size.z() * units.length_m * 1e3);
   text += fmt::format("liquid       {} droplets, about {:.0f} moving beads\n", scene.droplets.size(), moving);
   text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n", wall);
-  text += fmt::format("electrodes   {}\n", scene.layout.electrodes().size());
+  text += about_electrodes(scene);
   text += fmt::format("memory       about {:.0f} MB\n",
                       (moving * bytes_per_moving_bead + wall * bytes_per_wall_bead) / 1e6);
   text += fmt::format("one r_c      {:.4g} um, one tau {:.4g} us, one bead {:.4g} kg\n", units.length_m * 1e6,
@@ -54,27 +172,29 @@ std::string explain(const chip::Scene& scene) {
   text += fmt::format("time step    {} tau; {} tau to simulate = {:.0f} steps\n", parameters.time_step,
                       scene.default_duration + scene.settle_time,
                       (scene.default_duration + scene.settle_time) / parameters.time_step);
-  if (largest <= 0) return text + "no droplet, so no dimensionless numbers\n";
 
-  // Reduced units throughout for ours: a bead has mass 1, so mass density is bead density.
-  const double length = largest * units.length_m, speed = typical_speed * units.velocity_m_per_s();
-  text += fmt::format("\nwhat is resolved, for the largest droplet (radius {:.3g} um) at {:.3g} mm/s:\n",
-                      length * 1e6, speed * 1e3);
+  const char* which = "the largest droplet";
+  if (largest <= 0) {
+    const auto pitch = pitch_of(scene);
+    if (!pitch) return text + "no droplet and no electrode, so no dimensionless numbers\n";
+    largest = 0.5 * *pitch;
+    which = "a droplet that fills one electrode";
+  }
+  text += fmt::format("\nwhat is resolved, for {} (R {:.3g} um) at U {:.3g} mm/s:\n", which,
+                      largest * units.length_m * 1e6, typical_speed * units.velocity_m_per_s() * 1e3);
   text += fmt::format("  {:<46} {:>11} {:>11} {:>10}\n", "", "simulated", "water", "ratio");
-  text += line("Ohnesorge, viscosity / sqrt(density tension R)",
-               liquid.viscosity / std::sqrt(liquid.bulk_density * liquid.surface_tension * largest),
-               water_viscosity / std::sqrt(water_density * water_tension * length));
-  text += line("capillary, viscosity U / tension", liquid.viscosity * typical_speed / liquid.surface_tension,
-               water_viscosity * speed / water_tension);
-  text += line("Reynolds, density U R / viscosity",
-               liquid.bulk_density * typical_speed * largest / liquid.viscosity,
-               water_density * speed * length / water_viscosity);
-  text += line("Bond, density g R^2 / tension (no gravity here)", 0.0,
-               water_density * gravity * length * length / water_tension);
-  text +=
-      line("thermal, k_BT / (tension R^2)", liquid.temperature / (liquid.surface_tension * largest * largest),
-           thermal_energy / (water_tension * length * length));
-  return text;
+  std::string warnings;
+  for (const Likeness& number : likeness(scene, largest, typical_speed)) {
+    text += fmt::format("  {:<46} {:>11.3g} {:>11.3g} {:>10.3g}\n", number.name, number.simulated,
+                        number.water, number.simulated / number.water);
+    if (!number.therefore.empty()) {
+      warnings += fmt::format("  {}: {}\n", number.name.substr(0, number.name.find(',')), number.therefore);
+    }
+  }
+  if (warnings.empty()) return text;
+  return text + "\nwhat not to trust:\n" + warnings +
+         "  shapes at rest, who touches whom and which way a droplet goes follow the contact angles and are "
+         "resolved\n";
 }
 
 }  // namespace dmf::tools
