@@ -62,6 +62,10 @@ std::optional<SceneBoard> read_board(const YamlReader& root, const std::string& 
     }
   }
   const std::string name = chip.text("file");
+  if (name.empty()) {
+    if (!root.failed()) chip.report("file", "no name, allowed: a board file (.json, .svg)");
+    return board;
+  }
   attempt(chip, "file", [&] {
     board.path = find_board(name, scene_file);
     BoardFile file = read_board_file(board.path, options);

@@ -67,7 +67,10 @@ struct YamlReader::Document {
 
   void note(int line, const std::string& path, const std::string& violation) {
     const std::string where = path.empty() ? "" : path + ": ";
-    violations.push_back({line, fmt::format("{}:{}: {}{}", name, line, where, violation)});
+    const std::string text = fmt::format("{}:{}: {}{}", name, line, where, violation);
+    // What is read twice is wrong twice, and told once.
+    const auto same = [&text](const Violation& told) { return told.text == text; };
+    if (std::none_of(violations.begin(), violations.end(), same)) violations.push_back({line, text});
   }
 
   [[noreturn]] void refuse(int line, const std::string& violation) {

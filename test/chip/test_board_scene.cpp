@@ -97,6 +97,17 @@ TEST(BoardScene, AFileThatIsNotThereIsAllThatIsTold) {
             "scenes/../elsewhere/board.svg: is no file"));
 }
 
+TEST(BoardScene, NoNameOfAFileIsToldOnce) {
+  const auto told = [](const std::string& yaml) {
+    return refusal(
+        [&] { parse_scene("domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\n" + yaml + "\n", "scene.yaml"); });
+  };
+  EXPECT_EQ(told("chip: 5"), "scene.yaml:2: chip: 5, allowed: a mapping");
+  EXPECT_EQ(told("chip: {file: [a]}"), "scene.yaml:2: chip.file: a list of 1, allowed: text");
+  EXPECT_EQ(told("chip: {file: ''}"),
+            "scene.yaml:2: chip.file: no name, allowed: a board file (.json, .svg)");
+}
+
 TEST(BoardScene, WithoutAFileItsKeysMeanNothing) {
   EXPECT_TRUE(holds(
       refusal([] {
