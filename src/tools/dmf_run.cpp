@@ -40,9 +40,9 @@ int main(int argc, char** argv) {
   auto* explain_flag =
       app.add_flag("--explain", explain_only,
                    "print what would be simulated, and stop; also of a board file (.json, .svg)");
-  app.add_option("--resolution", resolution, "with --explain of a board file: r_c per pitch")
-      ->needs(explain_flag)
-      ->capture_default_str();
+  auto* of_board = app.add_option("--resolution", resolution, "with --explain of a board file: r_c per pitch")
+                       ->needs(explain_flag)
+                       ->capture_default_str();
   app.add_option("--file-unit", file_unit,
                  "with --explain of a board file: what one unit of it is, such as \"1 mm\"")
       ->needs(explain_flag);
@@ -51,10 +51,19 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", options.quiet, "no progress line");
   CLI11_PARSE(app, argc, argv);
   try {
+    const bool is_board = chip::is_board_file(options.scene);
+    if (is_board && !explain_only) {
+      throw engine::InvalidInput(
+          options.scene + ": is a board and no scene, allowed: with --explain, or a scene with chip.file");
+    }
+    if (!is_board && (of_board->count() > 0 || !file_unit.empty())) {
+      throw engine::InvalidInput(
+          "--resolution, --file-unit: allowed with a board file (.json, .svg); a scene says "
+          "chip.resolution itself");
+    }
     if (explain_only) {
-      fmt::print("{}", tools::explain(chip::is_board_file(options.scene)
-                                          ? chip::load_board(options.scene, resolution, file_unit)
-                                          : chip::load_scene(options.scene)));
+      fmt::print("{}", tools::explain(is_board ? chip::load_board(options.scene, resolution, file_unit)
+                                               : chip::load_scene(options.scene)));
       return 0;
     }
     const tools::RunResult result = tools::headless_run(options);

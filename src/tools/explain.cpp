@@ -154,9 +154,10 @@ std::string explain(const chip::Scene& scene) {
     moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * liquid.initial_density;
     largest = std::max(largest, droplet.radius);
   }
-  const double wall = parameters.domain.has_wall() ? 2 * parameters.wall.layers * size.x() * size.y() /
-                                                         std::pow(parameters.wall.lattice_constant, 2)
-                                                   : 0;
+  const engine::Domain& domain = parameters.domain;
+  const double plates = domain.has_top_plate() ? 2 : domain.has_wall() ? 1 : 0;
+  const double wall = plates * 2 * parameters.wall.layers * size.x() * size.y() /
+                      std::pow(parameters.wall.lattice_constant, 2);
   std::string text = fmt::format("{}: {}\n", scene.name, scene.description);
   text += fmt::format("domain       {} x {} x {} r_c = {:.3g} x {:.3g} x {:.3g} mm\n", size.x(), size.y(),
                       size.z(), size.x() * units.length_m * 1e3, size.y() * units.length_m * 1e3,

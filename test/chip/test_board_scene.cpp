@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "chip/experiment.h"
 #include "chip/scene.h"
+#include "engine/droplet.h"
 #include "refusal.h"
 
 namespace dmf::chip {
@@ -30,6 +32,15 @@ TEST(BoardScene, AFileAndAResolutionAreAWholeScene) {
   EXPECT_EQ(scene.layout.channels_text(), "10-12, 20-24, 30-32, 40-41, 50-51");
   // Channel 21 is at (-5.75, 3.25) mm from the middle of the board, see test_board_files.cpp.
   EXPECT_TRUE(scene.droplets.at(0).center.isApprox(engine::Vector3d(-28.75, 16.25, 5)));
+}
+
+TEST(BoardScene, BetweenPlatesADropletMayFillAnElectrodeOfTheBoard) {
+  const Scene scene =
+      parse("", "domain: {height: 6, sides: {z: plates}}\ndroplets: [{electrode: 21, fills: 1}]\n");
+  const engine::DropletPlacement& droplet = scene.droplets.at(0);
+  EXPECT_TRUE(droplet.center.head<2>().isApprox(Vector2d(-23, 13), 1e-9)) << "(-5.75, 3.25) mm of 0.25 mm";
+  // A disc as large as a cell of 10 x 10 r_c: within 5 %, as the pad is drawn in by 0.9 of the gap.
+  EXPECT_NEAR(std::pow(engine::pancake_radius(droplet, scene.parameters), 2) * 3.14159265, 100, 5);
 }
 
 TEST(BoardScene, TheUnitsAreWatersAtTheLengthThatFollows) {
