@@ -11,7 +11,7 @@
 #include "chip/board_drawing.h"
 #include "chip/svg_path.h"
 #include "engine/parameters.h"
-#include "engine/quantity.h"
+#include "yaml/quantity.h"
 
 namespace dmf::chip {
 
@@ -51,7 +51,7 @@ std::string_view trimmed(std::string_view text) {
 /// A number and nothing else; "1mm" is none.
 std::optional<double> whole_number(std::string_view text) {
   text = trimmed(text);
-  const auto value = engine::take_number(text);
+  const auto value = take_number(text);
   return text.empty() ? value : std::nullopt;
 }
 

@@ -10,7 +10,7 @@
 
 #include "chip/board_drawing.h"
 #include "engine/parameters.h"
-#include "engine/quantity.h"
+#include "yaml/quantity.h"
 
 namespace dmf::chip {
 
@@ -49,7 +49,7 @@ class Scanner {
   }
   double number() {
     skip();
-    const std::optional<double> value = at_number() ? engine::take_number(left_) : std::nullopt;
+    const std::optional<double> value = at_number() ? take_number(left_) : std::nullopt;
     if (!value) refuse("a finite number");
     return *value;
   }

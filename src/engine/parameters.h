@@ -3,20 +3,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "yaml/invalid_input.h"
 
 namespace dmf::engine {
 
 using Eigen::Vector3d;
 
-/// What a user asked for can't be done. `what()` names the thing, its value and what is allowed; one line a
-/// violation. Nothing has changed when it is thrown.
-class InvalidInput : public std::invalid_argument {
- public:
-  using std::invalid_argument::invalid_argument;
-};
+using dmf::InvalidInput;
 
 /// All in reduced units: lengths in r_c, masses in m, energies in k_BT, times in tau. Defaults are Lan's
 /// table 2.2.

@@ -1,4 +1,4 @@
-#include "engine/yaml_reader.h"
+#include "yaml/yaml_reader.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -10,9 +10,9 @@
 #include <set>
 #include <sstream>
 
-#include "engine/parameters.h"
+#include "yaml/invalid_input.h"
 
-namespace dmf::engine {
+namespace dmf {
 
 namespace {
 
@@ -488,4 +488,4 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest;
 }
 
-}  // namespace dmf::engine
+}  // namespace dmf

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "engine/units.h"
+#include "yaml/units.h"
 
-namespace dmf::engine {
+namespace dmf {
 
 /// What kind of thing a number in a file measures. A bare number is in the native unit, which is the reduced
 /// one for lengths, times, volumes, masses, accelerations and forces; text such as "1.5 mm" is converted.
@@ -170,4 +170,4 @@ inline double native_in_base(Dimension dimension, const Units& units) {
   }
 }
 
-}  // namespace dmf::engine
+}  // namespace dmf

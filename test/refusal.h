@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/parameters.h"
+#include "yaml/invalid_input.h"
 
 namespace dmf {
 
@@ -12,7 +12,7 @@ template <typename Action>
 std::string refusal(const Action& action) {
   try {
     action();
-  } catch (const engine::InvalidInput& refused) {
+  } catch (const InvalidInput& refused) {
     return refused.what();
   }
   ADD_FAILURE() << "nothing was refused";
