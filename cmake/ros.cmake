@@ -7,6 +7,8 @@ file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/devel/lib/python3/dist-packages)
 # genmsg leaves libraries nothing to link: targets that include a generated header depend on
 # ${dmf_sim_EXPORTED_TARGETS} and on ${catkin_EXPORTED_TARGETS}.
 find_package(catkin REQUIRED COMPONENTS
+  actionlib
+  actionlib_msgs
   diagnostic_msgs
   geometry_msgs
   message_generation
@@ -30,7 +32,18 @@ add_message_files(FILES
   Event.msg
   Layout.msg
   Microparticle.msg
-  MicroparticleArray.msg)
+  MicroparticleArray.msg
+  OperationLimits.msg
+  SensedDroplet.msg
+  SensedDropletArray.msg)
+
+add_action_files(FILES
+  Dispense.action
+  Merge.action
+  Mix.action
+  MoveDroplet.action
+  RunProtocol.action
+  Split.action)
 
 add_service_files(FILES
   AddMicroparticle.srv
@@ -51,9 +64,11 @@ add_service_files(FILES
   SetWettability.srv
   Step.srv)
 
-generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs std_msgs)
 
 catkin_package(CATKIN_DEPENDS
+  actionlib
+  actionlib_msgs
   diagnostic_msgs
   geometry_msgs
   message_runtime

@@ -15,14 +15,14 @@ packages=(
 )
 ros=(
   # build
-  catkin ros-message-generation libroscpp-dev libtf2-ros-dev
+  catkin ros-message-generation libroscpp-dev libtf2-ros-dev libactionlib-dev libactionlib-msgs-dev
   libstd-msgs-dev libstd-srvs-dev libgeometry-msgs-dev libsensor-msgs-dev libvisualization-msgs-dev
   libdiagnostic-msgs-dev libros-rosgraph-msgs-dev
   ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-visualization-msgs ros-diagnostic-msgs
   ros-actionlib-msgs ros-rosgraph-msgs
   # run
   rosbash rosout python3-roslaunch python3-rostopic python3-rosservice python3-rosnode python3-rosparam
-  python3-rosmsg python3-rosbag python3-rospy
+  python3-rosmsg python3-rosbag python3-rospy python3-actionlib python3-actionlib-msgs
   python3-std-msgs python3-std-srvs python3-geometry-msgs python3-sensor-msgs python3-visualization-msgs
   python3-diagnostic-msgs python3-rosgraph-msgs python3-tf2-msgs
   # test

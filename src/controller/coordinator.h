@@ -58,6 +58,7 @@ class Coordinator {
   const Layout& layout() const { return layout_; }
   const std::vector<Droplet>& droplets() const { return finder_.droplets(); }
   const Wetting& wetting() const { return wetting_; }
+  const Rail& rail() const { return rail_; }
   double time() const { return time_; }
   const Channels& dead() const { return dead_; }
 

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <numeric>
@@ -33,7 +34,11 @@ bool is_quoted(const YAML::Node& node) { return node.Tag() == "!"; }
 
 std::string allowed_quantity(Dimension dimension, const Range& range, bool needs_unit) {
   const std::string units = unit_names(dimension);
-  if (needs_unit) return fmt::format("a number with a unit ({})", units);
+  if (needs_unit) {
+    const bool any = !std::isfinite(range.lower) && !std::isfinite(range.upper);
+    const std::string base = units.substr(0, units.find(','));
+    return fmt::format("{} with a unit ({})", any ? "a number" : range.text() + " " + base + ",", units);
+  }
   std::string text = range.text(dimension);
   if (!units.empty()) text += fmt::format(" (units: {})", units);
   return text;

@@ -69,9 +69,10 @@ TEST(Scene, UnitsAreWatersByDefaultAndLansOnDemand) {
   EXPECT_NEAR(water.surface_tension_N_per_m() * engine::LiquidParameters{}.surface_tension, 0.072, 1e-12);
   EXPECT_NEAR(engine::LiquidParameters{}.bulk_density * water.mass_kg / 1e-15, 1000, 1e-9);
   EXPECT_DOUBLE_EQ(parse("units: {preset: lan2016}\n").units.time_s, 8.5e-6);
-  EXPECT_TRUE(holds(refused("units: {length: 10}\n"), "units.length: 10, allowed: a number with a unit"));
   EXPECT_TRUE(
-      holds(refused("units: {length: 10 ms}\n"), "units.length: 10 ms, allowed: a number with a unit"));
+      holds(refused("units: {length: 10}\n"), "units.length: 10, allowed: [1e-09, 0.01] m, with a unit"));
+  EXPECT_TRUE(holds(refused("units: {length: 10 ms}\n"),
+                    "units.length: 10 ms, allowed: [1e-09, 0.01] m, with a unit"));
 }
 
 TEST(Scene, TheSameLengthInAnyUnitIsTheSame) {
