@@ -81,7 +81,7 @@ class DispenseOperation : public Operation {
         view.time - phase_start_ >= limits_.step_timeout * (1 + limits_.retries)) {
       const Channel from = out_ ? goal_.path[out_ - 1] : goal_.reservoir;
       fail(fmt::format("the liquid does not reach electrode {}: {}", next,
-                       why_no_answer(view, from, next).reason));
+                       why_no_answer(view, from, next, view.wetting.at(from)).reason));
     }
   }
 

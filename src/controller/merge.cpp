@@ -67,7 +67,7 @@ class MergeOperation : public Operation {
       return succeed(fmt::format("merged on electrode {}", into_));
     if (view.time - touched_ > limits_.step_timeout * (1 + limits_.retries)) {
       fail(fmt::format("did not merge: {:.0f} % of electrode {} is still wetted ({})",
-                       100 * view.wetting.at(from_), from_, why_no_answer(view, from_, into_).reason));
+                       100 * view.wetting.at(from_), from_, why_no_answer(view, from_, into_, 1).reason));
     }
   }
 

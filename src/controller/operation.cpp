@@ -68,12 +68,13 @@ void Operation::fail(const std::string& reason) {
   status_.text = reason;
 }
 
-NoAnswer why_no_answer(const View& view, Channel from, Channel to) {
+NoAnswer why_no_answer(const View& view, Channel from, Channel to, double covered) {
   if (const std::string no_voltage = why_no_voltage(view); !no_voltage.empty()) return {no_voltage};
   if (view.disabled.count(to)) return {fmt::format("electrode {} is disabled", to), true};
-  if (view.wetting.at(to) < visible_fraction(view.layout, to) && view.wetting.at(from) < kInscribedCircle) {
-    return {fmt::format("no overlap with neighbour: {:.0f} % of electrode {} is wetted and nothing of {}",
-                        100 * view.wetting.at(from), from, to)};
+  if (view.wetting.at(to) < visible_fraction(view.layout, to) && covered < kInscribedCircle) {
+    return {fmt::format(
+        "no overlap with neighbour: {:.0f} % of electrode {} was wetted at most and nothing of {}",
+        100 * covered, from, to)};
   }
   return {fmt::format("electrode {} does not answer: stuck or too weak", to), true};
 }

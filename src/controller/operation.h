@@ -97,7 +97,8 @@ struct NoAnswer {
   bool is_electrode = false;  ///< the electrode is at fault, and another way may do; else rail or droplet
 };
 /// @param from  the electrode it is on. @param to  the one that was switched on.
-NoAnswer why_no_answer(const View& view, Channel from, Channel to);
+/// @param covered  the largest part of `from` that it was seen to wet: at rest it shrinks.
+NoAnswer why_no_answer(const View& view, Channel from, Channel to, double covered);
 
 /// Droplets near to electrodes that are not on `own`: "blocked by droplet 3"; empty when there is none.
 std::string why_no_room(const View& view, const Channels& cells, const Channels& own);

@@ -12,9 +12,10 @@ namespace dmf::controller {
 /// Switches exactly these channels on for a while, as the steps of MicroDrop do.
 struct Activate {
   Channels channels;
-  double duration = 0;                     ///< s
-  std::optional<double> volume_threshold;  ///< mean wetted fraction of the channels at which the step is done
-                                           ///< early; it fails when that is not reached within the duration
+  double duration = 0;  ///< s
+  /// Wetted fraction that each of the channels shall reach: the step is done as soon as they have, and fails
+  /// when they have not within the duration.
+  std::optional<double> volume_threshold;
 };
 /// Holds all droplets where they are.
 struct Wait {

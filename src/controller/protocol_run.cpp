@@ -96,16 +96,16 @@ bool ProtocolRun::is_done(const Activate& work) {
   step_time_left_ = std::max(0.0, work.duration - elapsed);
   status_.text = fmt::format("electrodes {} on", channels_text(work.channels));
   if (!work.volume_threshold) return elapsed >= work.duration;
-  double wetted = 0;
-  for (const Channel channel : work.channels)
-    wetted += coordinator_.wetting().at(channel) / static_cast<double>(work.channels.size());
-  if (wetted >= *work.volume_threshold) return true;
-  if (elapsed >= work.duration) {
-    fail(fmt::format("below threshold: {:.0f} % of electrodes {} are wetted after {:g} s, wanted: {:.0f} %",
-                     100 * wetted, channels_text(work.channels), work.duration,
-                     100 * *work.volume_threshold));
+  for (const Channel channel : work.channels) {
+    const double wetted = coordinator_.wetting().at(channel);
+    if (wetted >= *work.volume_threshold) continue;
+    if (elapsed >= work.duration) {
+      fail(fmt::format("below threshold: {:.0f} % of electrode {} is wetted after {:g} s, wanted: {:.0f} %",
+                       100 * wetted, channel, work.duration, 100 * *work.volume_threshold));
+    }
+    return false;
   }
-  return false;
+  return true;
 }
 
 bool ProtocolRun::is_done(const Wait& work) {

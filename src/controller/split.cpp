@@ -65,8 +65,8 @@ class SplitOperation : public Operation {
     unreached_.clear();
     for (const Channel side : {a_, b_}) {
       if (view.wetting.at(side) < threshold) {
-        unreached_ =
-            fmt::format("did not reach electrode {}: {}", side, why_no_answer(view, middle_, side).reason);
+        unreached_ = fmt::format("did not reach electrode {}: {}", side,
+                                 why_no_answer(view, middle_, side, view.wetting.at(middle_)).reason);
       }
     }
     // A droplet too small to lie on all three may still be torn by the outer two.

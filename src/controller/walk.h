@@ -28,17 +28,20 @@ class Walk {
   std::size_t steps_left(const View& view) const;
 
  private:
+  bool is_lost(const View& view);
   Result step(View& view);
   Result give_up_step(View& view);
 
   Traffic::Key key_;
   Limits limits_;
   bool as_given_;
-  double wetted_area_;  ///< m^2, of the droplet at the start
+  double last_seen_;    ///< s
+  double wetted_area_;  ///< m^2, of the droplet where it stood
   Channel cell_, goal_, last_cell_;
   bool stepping_ = false;
   bool pulling_back_ = false;
   double step_start_ = 0, try_start_ = 0;  ///< s
+  double reached_ = -1;                    ///< s, when the next electrode was wetted enough; below 0: not yet
   unsigned tries_ = 0;
   bool is_blocked_ = false;
   std::size_t steps_done_ = 0;

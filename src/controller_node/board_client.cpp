@@ -4,6 +4,7 @@
 #include <dmf_sim/GetLayout.h>
 #include <dmf_sim/SetElectrodes.h>
 #include <dmf_sim/SetHv.h>
+#include <ros/service.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -38,7 +38,7 @@ class OperationServer {
     for (auto active = active_.begin(); active != active_.end();) {
       const controller::Report report = workplace_.coordinator.report(active->first);
       if (report.status.state == controller::State::running) {
-        typename Handle::Feedback feedback;
+        typename actionlib::ActionServer<Action>::Feedback feedback;
         feedback.progress = report.status.progress;
         feedback.time_left = report.status.time_left;
         feedback.text = report.status.text;

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       {"liquid", study_liquid},
       {"crossing", study_crossing},
       {"time_step", study_time_step},
+      {"protocols", study_protocols},
       {"microparticle_angle", study_microparticle_angle},
       {"forces", study_forces},
       {"inner_flow", study_inner_flow},
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"
       "  splitting        between two plates: up to which gap over pitch a droplet splits\n"
       "  transport_velocity  how fast a droplet moves along electrodes under what voltage\n"
+      "  protocols        success rate of the controller's protocols, with faults too\n"
       "Microparticles:\n"
       "  microparticle_angle  attraction -> contact angle, floating in a film; writes microparticle.yaml\n" +
       transport_titles +

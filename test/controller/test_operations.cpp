@@ -133,7 +133,7 @@ TEST(Move, ADropletThatDoesNotReachItsNeighbourIsToldSo) {
   bench.look();
   const auto key = bench.coordinator.start(Move{0, 3, {}, quick()});
   ASSERT_TRUE(bench.run(20));
-  EXPECT_TRUE(holds(bench.status(key).text, "no overlap with neighbour: 50 % of electrode 0"));
+  EXPECT_TRUE(holds(bench.status(key).text, "no overlap with neighbour: 50 % of electrode 0 was wetted at most and nothing of 1"));
 }
 
 TEST(Move, TimeoutAndALostDropletEndIt) {

@@ -76,7 +76,7 @@ TEST(Protocol, AStepWithAThresholdIsDoneEarlyOrFails) {
   late.board.amount[0] = 1;
   ASSERT_TRUE(late.finish(5));
   EXPECT_EQ(late.run.status().text,
-            "step 1 (fill): below threshold: 0 % of electrodes 2 are wetted after 2 s, wanted: 90 %");
+            "step 1 (fill): below threshold: 0 % of electrode 2 is wetted after 2 s, wanted: 90 %");
 }
 
 TEST(Protocol, AFailureNamesItsStepAndLeavesTheLiquidHeld) {
