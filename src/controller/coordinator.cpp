@@ -173,6 +173,9 @@ void Coordinator::note_applied(const Channels& applied) {
   }
 }
 
-void Coordinator::forget_dead_electrodes() { dead_ = disabled_; }
+void Coordinator::forget_dead_electrodes() {
+  disabled_.clear();
+  dead_.clear();
+}
 
 }  // namespace dmf::controller

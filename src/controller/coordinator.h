@@ -52,7 +52,7 @@ class Coordinator {
   std::optional<Channels> on() const;
   /// The channels that the board has switched on when it was told on(): the others of these are disabled.
   void note_applied(const Channels& applied);
-  /// Electrodes that were found not to answer are tried again.
+  /// Electrodes that were disabled or found not to answer are tried again.
   void forget_dead_electrodes();
 
   const Layout& layout() const { return layout_; }

@@ -25,6 +25,9 @@ Node::Node(const Options& options)
 }
 
 void Node::look(const controller::Reading& reading) {
+  // A board whose rail has gone off, halted or reset, may have switched its electrodes off as well.
+  if (had_rail_ && !board_.rail().enabled) has_told_ = false;
+  had_rail_ = board_.rail().enabled;
   coordinator_.update(reading, board_.rail());
   protocol_.update();
   if (const auto rail = protocol_.wanted_rail()) {
@@ -55,6 +58,8 @@ void Node::drive() {
 }
 
 void Node::prepare() {
+  // What has been found not to answer is tried again by who begins anew.
+  if (coordinator_.is_idle()) coordinator_.forget_dead_electrodes();
   if (board_.rail().enabled && board_.rail().voltage > 0) return;
   const double voltage = options_.voltage > 0 ? options_.voltage : board_.layout().reference_voltage;
   const std::string refused = board_.set_rail({voltage, options_.frequency, true});

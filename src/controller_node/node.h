@@ -37,6 +37,7 @@ class Node {
   Workplace workplace_;
   controller::Channels on_;  ///< as the board was last told
   bool has_told_ = false;
+  bool had_rail_ = false;
   ros::Publisher droplets_;
   OperationServer<dmf_sim::MoveDropletAction> move_;
   OperationServer<dmf_sim::SplitAction> split_;

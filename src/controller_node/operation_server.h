@@ -16,8 +16,9 @@ namespace dmf::controller_node {
 struct Workplace {
   controller::Coordinator& coordinator;
   controller::Limits defaults;
-  std::function<void()> prepare;  ///< the rail on; throws InvalidInput when that can't be
-  std::function<void()> drive;    ///< what the coordinator wants goes to the board, now
+  /// Before an operation begins: the rail on. Throws InvalidInput when that can't be.
+  std::function<void()> prepare;
+  std::function<void()> drive;  ///< what the coordinator wants goes to the board, now
   std::function<std::string(controller::Channel)> explain;  ///< why a droplet does not move; may be empty
 };
 
