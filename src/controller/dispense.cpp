@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "controller/neck.h"
 #include "controller/operations.h"
 
 namespace dmf::controller {
@@ -56,6 +57,7 @@ class DispenseOperation : public Operation {
 
   void begin_try(const View& view) {
     out_ = 0;
+    neck_ = Neck();
     start_phase(view);
   }
 
@@ -90,7 +92,12 @@ class DispenseOperation : public Operation {
     status_.text = fmt::format("breaks the neck before electrode {}", goal_.path.back());
     const Droplet* droplet = view.droplets.on(goal_.path.back());
     const Droplet* reservoir = view.droplets.on(goal_.reservoir);
-    if (droplet && reservoir && droplet->id != reservoir->id) {
+    const auto neck = std::min_element(goal_.path.begin(), goal_.path.end() - 1, [&](Channel a, Channel b) {
+      return view.wetting.at(a) < view.wetting.at(b);
+    });
+    const bool broken = neck_.has_broken(view.wetting.at(*neck), view.droplets.threshold(), view.time,
+                                         kNeckQuiet * limits_.step_timeout);
+    if (droplet && reservoir && droplet->id != reservoir->id && broken) {
       apart_ = true;
       return judge(*droplet);
     }
@@ -116,6 +123,7 @@ class DispenseOperation : public Operation {
   bool waiting_ = true;
   std::size_t out_ = 0;     ///< electrodes of the path that the finger has reached
   double phase_start_ = 0;  ///< s
+  Neck neck_;
   unsigned tries_ = 0;
   bool is_blocked_ = false;
   bool apart_ = false;

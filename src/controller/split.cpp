@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "controller/neck.h"
 #include "controller/operations.h"
 #include "yaml/invalid_input.h"
 
@@ -71,6 +72,7 @@ class SplitOperation : public Operation {
     }
     // A droplet too small to lie on all three may still be torn by the outer two.
     enter(Phase::pinch, view, 0.5, fmt::format("is pulled apart onto electrodes {} and {}", a_, b_));
+    neck_ = Neck();
     on_ = {a_, b_};
   }
 
@@ -78,7 +80,9 @@ class SplitOperation : public Operation {
     on_ = {a_, b_};
     const Droplet* on_a = view.droplets.on(a_);
     const Droplet* on_b = view.droplets.on(b_);
-    if (on_a && on_b && on_a->id != on_b->id && !view.droplets.on(middle_)) {
+    const bool broken = neck_.has_broken(view.wetting.at(middle_), view.droplets.threshold(), view.time,
+                                         kNeckQuiet * limits_.step_timeout);
+    if (on_a && on_b && on_a->id != on_b->id && broken) {
       apart_ = true;
       return succeed(fmt::format("split onto electrodes {} and {}, which cover {:.2f} and {:.2f} electrodes",
                                  a_, b_, on_a->covered, on_b->covered));
@@ -102,6 +106,7 @@ class SplitOperation : public Operation {
   Channel middle_, a_, b_;
   Phase phase_ = Phase::wait_for_room;
   double phase_start_ = 0;  ///< s
+  Neck neck_;
   unsigned tries_ = 0;
   std::string unreached_;  ///< why one of both was dry after the last stretching
   bool is_blocked_ = false;

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+
+#include "chip/configuration.h"
+#include "refusal.h"
+#include "tools/controlled_experiment.h"
+
+namespace dmf::tools {
+namespace {
+
+/// Four coarse electrodes in a line and a droplet on the first.
+const char* const kLine = R"(
+integrator: baoab
+time_step: 0.03
+domain: {lower: [-14, -6, 0], upper: [14, 6, 12]}
+wettability: {rest_angle: 110}
+chip:
+  gap: 1
+  grids: [{origin: [-9, 0], columns: 4, rows: 1, pitch: 6}]
+  electrowetting: {reference_voltage: 63, reference_angle: 60, saturation_angle: 55}
+droplets: [{center: [-9, 0], radius: 3.5}]
+)";
+
+controller::Protocol move_to(ControlledExperiment& controlled, int target) {
+  return controller::parse_protocol(
+      "voltage: 63 V\nlimits: {retries: 0, step_timeout: 3 s}\nsteps: [{move: {channel: 0, to: " +
+          std::to_string(target) + "}}]\n",
+      "move", controlled.coordinator().layout(), 80);
+}
+
+double droplet_x(ControlledExperiment& controlled) {
+  return controlled.experiment().observe()->droplets.at(0).centroid.x();
+}
+
+TEST(ControlledExperiment, ADropletIsMovedByWhatItsCapacitanceTells) {
+  ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+  controller::ProtocolRun run(move_to(controlled, 2), controlled.coordinator());
+  controlled.finish(run, 20);
+  EXPECT_EQ(run.status().state, controller::State::succeeded) << run.status().text;
+  EXPECT_NEAR(droplet_x(controlled), 3, 2.5) << "on the third electrode, 5 r_c wide";
+  EXPECT_LT(controlled.time(), 10);
+}
+
+TEST(ControlledExperiment, FaultsOfTheChipAreNamedFromOutside) {
+  const std::map<std::string, chip::Command> faults{
+      {"electrode 1 does not answer", chip::InjectFault{"stuck_off", 1, 0, false}},
+      {"electrode 1 is disabled", chip::SetDisabledChannels{{1}}},
+      {"does not", chip::InjectFault{"weak", 1, 0.1, false}}};
+  for (const auto& [name, fault] : faults) {
+    ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+    ASSERT_TRUE(controlled.experiment().apply(fault).success);
+    controller::ProtocolRun run(move_to(controlled, 2), controlled.coordinator());
+    controlled.finish(run, 20);
+    EXPECT_EQ(run.status().state, controller::State::failed);
+    EXPECT_TRUE(holds(run.status().text, name));
+    EXPECT_LT(droplet_x(controlled), -6) << "where it was";
+  }
+}
+
+TEST(ControlledExperiment, AHaltOfTheBoardEndsAProtocolByName) {
+  ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+  controller::ProtocolRun run(move_to(controlled, 3), controlled.coordinator());
+  for (int k = 0; k < 20; ++k) controlled.advance(&run);
+  controlled.experiment().apply(chip::Halt{"for a test"});
+  controlled.finish(run, 1);
+  EXPECT_TRUE(holds(run.status().text, "the high-voltage rail is off"));
+}
+
+TEST(ControlledExperiment, TheSameSeedGivesTheSameRun) {
+  const auto hash = [] {
+    ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 4);
+    controller::ProtocolRun run(move_to(controlled, 1), controlled.coordinator());
+    controlled.finish(run, 20);
+    engine::ObserveRequest request;
+    request.hash = true;
+    return controlled.experiment().observe(request)->state_hash;
+  };
+  EXPECT_EQ(hash(), hash());
+}
+
+TEST(Protocols, EveryShippedOneFitsItsScene) {
+  const std::map<std::string, std::string> closed{
+      {"split", "closed_array"}, {"dispense", "closed_array"}, {"serial_dilution", "closed_array"}};
+  std::size_t read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(chip::config_directory() + "/protocols")) {
+    const auto of = closed.find(entry.path().stem().string());
+    const chip::Scene scene = chip::load_scene(of == closed.end() ? "electrode_array" : of->second);
+    const controller::Layout layout(describe_board(scene));
+    EXPECT_NO_THROW(
+        controller::load_protocol(entry.path().string(), layout, scene.electrowetting.max_voltage))
+        << entry.path();
+    ++read;
+  }
+  EXPECT_GE(read, 10u);
+}
+
+}  // namespace
+}  // namespace dmf::tools
