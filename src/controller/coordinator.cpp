@@ -10,6 +10,9 @@ namespace dmf::controller {
 
 namespace {
 
+/// For how long news of the rail may be late, s.
+constexpr double kRailPatience = 0.3;
+
 bool intersect(const Channels& a, const Channels& b) {
   return std::any_of(a.begin(), a.end(), [&](Channel channel) { return b.count(channel) > 0; });
 }
@@ -22,12 +25,14 @@ Coordinator::Coordinator(Layout layout, double wetted_fraction)
 }
 
 View Coordinator::view() {
-  return {time_, layout_, wetting_, finder_, rail_, disabled_, true, traffic_, dead_, step_times_};
+  return {time_,     layout_, wetting_, finder_, rail_,      rail_is_off(),
+          disabled_, true,    traffic_, dead_,   step_times_};
 }
 
 void Coordinator::update(const Reading& reading, const Rail& rail) {
   time_ = reading.time;
   rail_ = rail;
+  if (rail.enabled && rail.voltage > 0) rail_on_ = time_;
   has_reading_ = true;
   wetting_ = wetting_of(layout_, reading);
   finder_.update(wetting_);
@@ -43,6 +48,10 @@ void Coordinator::update(const Reading& reading, const Rail& rail) {
   }
   traffic_.advance(obstacles(), dead_);
   update_holds();
+}
+
+bool Coordinator::rail_is_off() const {
+  return !(rail_.enabled && rail_.voltage > 0) && time_ - rail_on_ > kRailPatience;
 }
 
 std::vector<Obstacle> Coordinator::obstacles() const {
@@ -106,6 +115,7 @@ Coordinator::Key Coordinator::start(const Goal& goal) {
   View now = view();
   operations_[next_key_] = make_operation(goal, next_key_, now);
   is_active_ = true;
+  rail_on_ = time_;
   manual_.reset();
   update_holds();
   return next_key_++;

@@ -59,6 +59,9 @@ class Coordinator {
   const std::vector<Droplet>& droplets() const { return finder_.droplets(); }
   const Wetting& wetting() const { return wetting_; }
   const Rail& rail() const { return rail_; }
+  /// Off, and for longer than news of it may be late: a board is told to switch it on by another way than it
+  /// tells that it is on.
+  bool rail_is_off() const;
   double time() const { return time_; }
   const Channels& dead() const { return dead_; }
 
@@ -72,6 +75,7 @@ class Coordinator {
   Traffic traffic_;
   Wetting wetting_;
   Rail rail_;
+  double rail_on_ = 0;  ///< s, when it was last on, or an operation began that takes it for on
   double time_ = 0;
   bool has_reading_ = false;
   bool is_active_ = false;

@@ -20,7 +20,7 @@ double visible_fraction(const Layout& layout, Channel channel) {
 }
 
 std::string why_no_voltage(const View& view) {
-  if (!view.rail.enabled || view.rail.voltage <= 0) return "the high-voltage rail is off";
+  if (view.rail_is_off) return "the high-voltage rail is off";
   if (view.layout.threshold_voltage() > 0 && view.rail.voltage <= view.layout.threshold_voltage()) {
     return fmt::format("below threshold voltage: the rail has {:g} V, nothing moves up to {:g} V",
                        view.rail.voltage, view.layout.threshold_voltage());
@@ -38,7 +38,7 @@ void StepTimes::add(double seconds) {
 
 void Operation::update(View& view) {
   if (!is_running()) return;
-  if (!view.rail.enabled || view.rail.voltage <= 0) {
+  if (view.rail_is_off) {
     fail("the high-voltage rail is off");
   } else if (limits_.timeout > 0 && view.time - start_ > limits_.timeout) {
     fail(fmt::format("timeout: not done after {:g} s ({})", limits_.timeout, status_.text));

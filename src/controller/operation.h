@@ -34,6 +34,7 @@ struct View {
   const Wetting& wetting;
   const DropletFinder& droplets;
   Rail rail;
+  bool rail_is_off;          ///< and has been for a while
   const Channels& disabled;  ///< the board refuses to switch them on
   bool alone;                ///< nothing else is under way that might still make room
   Traffic& traffic;

@@ -34,7 +34,7 @@ void ProtocolRun::update() {
     begin();
     if (!is_running()) return;
   }
-  if (!coordinator_.rail().enabled) return fail("the high-voltage rail is off");
+  if (coordinator_.rail_is_off()) return fail("the high-voltage rail is off");
   const bool done = std::visit([&](const auto& work) { return is_done(work); }, step.work);
   if (!is_running()) return;
   if (done) {

@@ -122,7 +122,7 @@ TEST(Move, RailAndThresholdAreNamed) {
   bench.board.rail.voltage = 63;
   key = bench.coordinator.start(Move{0, 3, {}, quick()});
   bench.board.rail.enabled = false;
-  ASSERT_TRUE(bench.run(0.2));
+  ASSERT_TRUE(bench.run(0.5));
   EXPECT_EQ(bench.status(key).text, "the high-voltage rail is off");
 }
 
