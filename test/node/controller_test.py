@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Chip and controller together: every action over the public interface only."""
+import subprocess
 import time
 import unittest
 
@@ -144,6 +145,17 @@ class ControllerTest(unittest.TestCase):
 
     def test_a_blocked_droplet_names_who_is_in_its_way(self):
         self.check(self.move.run(MoveDropletGoal(channel=0, target=4)), GoalStatus.ABORTED, "blocked by droplet")
+
+    def test_the_examples_do_what_they_say(self):
+        for example, channel, target in (("move_droplet.py", 0, 1), ("move_droplet", 1, 0)):
+            done = subprocess.run(["rosrun", "dmf_sim", example, str(channel), str(target)], capture_output=True,
+                                  text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"moved to electrode {target}", done.stdout)
+        refused = subprocess.run(["rosrun", "dmf_sim", "move_droplet.py", "0", "40"], capture_output=True, text=True,
+                                 timeout=60, check=False)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("to: 40", refused.stdout)
 
     def test_protocols_run_from_file_and_text(self):
         for goal in (RunProtocolGoal(protocol="walk"),
