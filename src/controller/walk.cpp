@@ -41,6 +41,7 @@ Walk::Walk(Traffic::Key key, const Limits& limits, const Droplet& droplet, const
     wetted_area_ += view.wetting.at(channel) * view.layout.area(channel);
   Journey own = journey;
   own.reach = droplet.covered >= kLargeDroplet ? 1 : 0;
+  own.may_touch.insert(droplet.id);  // when it merges, the whole may go on under its id
   view.traffic.enter(key, droplet.id, own);
   on_ = {cell_};
 }

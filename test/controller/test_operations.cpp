@@ -133,7 +133,8 @@ TEST(Move, ADropletThatDoesNotReachItsNeighbourIsToldSo) {
   bench.look();
   const auto key = bench.coordinator.start(Move{0, 3, {}, quick()});
   ASSERT_TRUE(bench.run(20));
-  EXPECT_TRUE(holds(bench.status(key).text, "no overlap with neighbour: 50 % of electrode 0 was wetted at most and nothing of 1"));
+  EXPECT_TRUE(holds(bench.status(key).text,
+                    "no overlap with neighbour: 50 % of electrode 0 was wetted at most and nothing of 1"));
 }
 
 TEST(Move, TimeoutAndALostDropletEndIt) {
@@ -186,6 +187,18 @@ TEST(Split, FailsOverAStuckElectrodeWithTheLiquidPulledBack) {
   EXPECT_EQ(bench.status(key).state, State::failed);
   EXPECT_TRUE(holds(bench.status(key).text, "did not reach electrode 3: electrode 3 does not answer"));
   EXPECT_EQ(bench.board.on().size(), 1u);
+}
+
+TEST(Merge, TheOneThatMovesMayGiveTheWholeItsId) {
+  // The moving droplet is the larger one: from the first touch on its id is that of both.
+  Bench bench(grid_board(6, 1));
+  bench.board.amount = {{0, 1}, {5, 0.4}};
+  bench.look();
+  const auto key = bench.coordinator.start(Merge{0, 5, quick()});
+  ASSERT_TRUE(bench.run(30));
+  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
+  ASSERT_EQ(bench.coordinator.droplets().size(), 1u);
+  EXPECT_EQ(bench.coordinator.droplets()[0].id, 1u);
 }
 
 TEST(Merge, TwoDropletsBecomeOne) {

@@ -82,7 +82,7 @@ TEST(ControlledExperiment, TheSameSeedGivesTheSameRun) {
 
 TEST(Protocols, EveryShippedOneFitsItsScene) {
   const std::map<std::string, std::string> closed{
-      {"split", "closed_array"}, {"dispense", "closed_array"}, {"serial_dilution", "closed_array"}};
+      {"split", "closed_line"}, {"dispense", "closed_array"}, {"serial_dilution", "closed_array"}};
   std::size_t read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(chip::config_directory() + "/protocols")) {
     const auto of = closed.find(entry.path().stem().string());

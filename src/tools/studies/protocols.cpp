@@ -35,7 +35,7 @@ std::vector<Trial> trials(bool quick) {
           {"merge", "merge", array, {9}},
           {"mix", "mix", array, {23}},
           {"manual", "manual", array, {8, 23}},
-          {"split", "split", "closed_array", {9, 11, 18}},
+          {"split", "split", "closed_line", {1, 3}},
           {"dispense", "dispense", "closed_array", {7, 10, 18}},
           {"serial_dilution", "serial_dilution", "closed_array", {9, 11, 12, 18}, {}, 400},
           {"weak_electrode", "move_line", array, {5, 23}, {weak}},
