@@ -147,7 +147,7 @@ Scene load_scene(const std::string& file) {
 
 Scene load_board(const std::string& file, double resolution, const std::string& file_unit) {
   BoardFileOptions options;
-  if (const auto unit = engine::parse_quantity(file_unit, Dimension::length); unit && !unit->bare) {
+  if (const auto unit = parse_quantity(file_unit, Dimension::length); unit && !unit->bare) {
     options.unit_m = unit->value;
   }
   // What is wrong with the file itself is told without a word about scenes.
