@@ -416,7 +416,7 @@ void survives(const std::string& text, const std::string& name) {
   try {
     for (const Electrode& electrode : parse_board_file(text, name, {}).electrodes)
       EXPECT_EQ(polygon_fault(electrode.outline), "");
-  } catch (const engine::InvalidInput& refused) {
+  } catch (const InvalidInput& refused) {
     EXPECT_NE(std::string(refused.what()).find(name), std::string::npos);
   }
 }
