@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../chip/refusal.h"
+#include "refusal.h"
 #include "droplet_on_wall.h"
 #include "engine/bodies/contact.h"
 #include "engine/simulation.h"

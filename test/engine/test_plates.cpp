@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../chip/refusal.h"
+#include "refusal.h"
 #include "engine/simulation.h"
 #include "systems.h"
 

@@ -68,6 +68,38 @@ TEST(ControlledExperiment, AHaltOfTheBoardEndsAProtocolByName) {
   EXPECT_TRUE(holds(run.status().text, "the high-voltage rail is off"));
 }
 
+TEST(ControlledExperiment, AShortedPadHaltsTheRailAndTheProtocolSaysSo) {
+  ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+  ASSERT_TRUE(controlled.experiment().apply(chip::InjectFault{"short", 1, 0, false}).success);
+  controller::ProtocolRun run(move_to(controlled, 2), controlled.coordinator());
+  controlled.finish(run, 20);
+  EXPECT_EQ(run.status().state, controller::State::failed);
+  EXPECT_TRUE(holds(run.status().text, "the high-voltage rail is off"));
+  EXPECT_TRUE(holds(controlled.experiment().rail().halted, "channel 1"));
+}
+
+TEST(ControlledExperiment, AChipThatIsUnpluggedOnTheWayIsADropletThatIsLost) {
+  ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+  controller::ProtocolRun run(move_to(controlled, 3), controlled.coordinator());
+  for (int k = 0; k < 20; ++k) controlled.advance(&run);
+  ASSERT_TRUE(controlled.experiment().apply(chip::InjectFault{"disconnected", 0, 0, false}).success);
+  controlled.finish(run, 5);
+  EXPECT_EQ(run.status().state, controller::State::failed);
+  EXPECT_TRUE(holds(run.status().text, "droplet"));
+}
+
+TEST(ControlledExperiment, AnElectrodeThatIsStuckOnIsPassedOrNamed) {
+  ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 1);
+  ASSERT_TRUE(controlled.experiment().apply(chip::InjectFault{"stuck_on", 1, 0, false}).success);
+  controller::ProtocolRun run(move_to(controlled, 3), controlled.coordinator());
+  controlled.finish(run, 30);
+  // It pulls from behind: the droplet gets past it, or the controller tells where it stands.
+  if (run.status().state == controller::State::succeeded)
+    EXPECT_NEAR(droplet_x(controlled), 9, 3);
+  else
+    EXPECT_TRUE(holds(run.status().text, "electrode"));
+}
+
 TEST(ControlledExperiment, TheSameSeedGivesTheSameRun) {
   const auto hash = [] {
     ControlledExperiment controlled(chip::parse_scene(kLine, "line"), {1, "auto"}, 4);
