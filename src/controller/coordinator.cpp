@@ -61,15 +61,20 @@ std::vector<Obstacle> Coordinator::obstacles() const {
     if (!operation->is_running()) continue;
     const Channels walks_on = operation->walks_on();
     walked_on.insert(walks_on.begin(), walks_on.end());
-    Obstacle claimed;
+    Obstacle claimed{0, {}, key};
     for (const Channel channel : operation->claims())
       if (!walks_on.count(channel)) claimed.cells.insert(channel);
     for (const Channel channel : claimed.cells)
       if (const Droplet* droplet = finder_.on(channel)) claimed.droplet = droplet->id;
     if (!claimed.cells.empty()) obstacles.push_back(claimed);
   }
-  for (const Droplet& droplet : finder_.droplets())
-    if (!intersect(droplet.channels, walked_on)) obstacles.push_back({droplet.id, droplet.channels});
+  for (const Droplet& droplet : finder_.droplets()) {
+    if (intersect(droplet.channels, walked_on)) continue;
+    Obstacle standing{droplet.id, droplet.channels, 0};
+    for (const auto& [key, operation] : operations_)
+      if (operation->is_running() && intersect(droplet.channels, operation->claims())) standing.owner = key;
+    obstacles.push_back(standing);
+  }
   return obstacles;
 }
 

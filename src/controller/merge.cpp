@@ -20,7 +20,7 @@ class MergeOperation : public Operation {
                  View& view)
       : Operation(key, goal.limits, view.time),
         into_(goal.into),
-        walk_(key, goal.limits, droplet, {goal.channel, {goal.into}, false, 0, {other.id}}, view) {
+        walk_(key, goal.limits, droplet, {goal.channel, {goal.into}, false, 0, {other.id}, 0}, view) {
     on_ = walk_.on();
     on_.insert(into_);
   }

@@ -74,7 +74,7 @@ std::vector<Channel> shortest_loop(const Layout& layout, Channel channel, const 
 
 std::unique_ptr<Operation> make_move(const Move& goal, Traffic::Key key, View& view) {
   const bool as_given = !goal.path.empty();
-  Journey journey{goal.channel, as_given ? goal.path : std::vector<Channel>{goal.to}, as_given, 0, {}};
+  Journey journey{goal.channel, as_given ? goal.path : std::vector<Channel>{goal.to}, as_given, 0, {}, 0};
   if (const Surroundings empty_board{{}, {}, view.dead}; !find_route(view.layout, journey, empty_board))
     throw InvalidInput(why_no_route(view.layout, journey, empty_board));
   return std::make_unique<WalkOperation>(key, goal.limits, *view.droplets.on(goal.channel), journey,
@@ -89,7 +89,7 @@ std::unique_ptr<Operation> make_mix(const Mix& goal, Traffic::Key key, View& vie
       if (loop.empty() && !view.dead.count(neighbour)) loop = {neighbour};
   }
   if (loop.empty()) throw InvalidInput(fmt::format("channel {} has no neighbour to mix over", goal.channel));
-  Journey journey{goal.channel, {}, true, 0, {}};
+  Journey journey{goal.channel, {}, true, 0, {}, 0};
   for (unsigned lap = 0; lap < goal.laps; ++lap) {
     journey.over.insert(journey.over.end(), loop.begin(), loop.end());
     journey.over.push_back(goal.channel);

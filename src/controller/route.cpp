@@ -30,6 +30,7 @@ class Rules {
     for (const Channel cell : surroundings.dead) barred_.insert(cell);
     for (const Obstacle& obstacle : surroundings.obstacles) {
       if (journey.may_touch.count(obstacle.droplet)) continue;
+      if (obstacle.owner && obstacle.owner == journey.owner) continue;
       for (const Channel cell : obstacle.cells) {
         const Channels guard = layout.within(cell, 1 + reach_);
         barred_.insert(guard.begin(), guard.end());
@@ -150,11 +151,11 @@ std::optional<std::vector<Channel>> find_route(const Layout& layout, const Journ
   return std::nullopt;
 }
 
-bool is_clear(const Layout& layout, const Traveller& traveller, const Channels& may_touch,
+bool is_clear(const Layout& layout, const Traveller& traveller, const Journey& journey,
               const Surroundings& surroundings) {
   const std::vector<Channel>& cells = traveller.cells;
-  const Rules rules(layout, {cells.front(), {}, false, traveller.reach, may_touch},
-                    {{}, surroundings.obstacles, surroundings.dead});
+  const Surroundings standing{{}, surroundings.obstacles, surroundings.dead};
+  const Rules rules(layout, journey, standing);
   for (std::size_t step = 1; step < cells.size(); ++step)
     if (!rules.may_step(cells[step - 1], cells[step], 0)) return false;
   return true;

@@ -20,6 +20,7 @@ struct Traveller {
 struct Obstacle {
   std::uint32_t droplet = 0;
   Channels cells;
+  std::uint32_t owner = 0;  ///< operation that it belongs to; 0: none
 };
 
 /// What a route has to keep clear of.
@@ -36,8 +37,9 @@ struct Journey {
   /// stays, and makes room for others at most.
   std::vector<Channel> over;
   bool as_given = false;
-  int reach = 0;       ///< as Traveller::reach
-  Channels may_touch;  ///< droplets (ids) that it may come near to: it is to merge with them
+  int reach = 0;            ///< as Traveller::reach
+  Channels may_touch;       ///< droplets (ids) that it may come near to: it is to merge with them
+  std::uint32_t owner = 0;  ///< operation that moves it: what belongs to that is not in its way
 };
 
 /// The quickest way, in steps from one electrode to a neighbour or of waiting: the electrode now, after one
@@ -57,7 +59,7 @@ std::optional<std::vector<Channel>> find_route(const Layout& layout, const Journ
                                                const Surroundings& surroundings);
 
 /// The rest of a way that a droplet is on keeps clear of obstacles and dead electrodes.
-bool is_clear(const Layout& layout, const Traveller& traveller, const Channels& may_touch,
+bool is_clear(const Layout& layout, const Traveller& traveller, const Journey& journey,
               const Surroundings& surroundings);
 
 /// Why there is no way: "blocked by droplet 3", or "no way from channel 0 to 5: electrodes 2, 8 are dead".

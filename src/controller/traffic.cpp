@@ -6,6 +6,7 @@ namespace dmf::controller {
 
 void Traffic::enter(Key key, std::uint32_t droplet, const Journey& journey) {
   entries_[key] = {droplet, journey, {journey.from}, true, ""};
+  entries_[key].journey.owner = key;
 }
 
 void Traffic::turn_back(Key key, Channel cell) {
@@ -67,7 +68,7 @@ void Traffic::advance(const std::vector<Obstacle>& obstacles, const Channels& de
   const Surroundings standing{{}, obstacles, dead};
   for (auto& [key, entry] : entries_) {
     const Traveller traveller{entry.droplet, entry.cells, entry.journey.reach};
-    if (!is_clear(layout_, traveller, entry.journey.may_touch, standing)) entry.cells.resize(1);
+    if (!is_clear(layout_, traveller, entry.journey, standing)) entry.cells.resize(1);
   }
   for (auto& [key, entry] : entries_) {
     if (entry.cells.size() > 1 || is_at_destination(entry)) continue;

@@ -201,6 +201,21 @@ TEST(Merge, TheOneThatMovesMayGiveTheWholeItsId) {
   EXPECT_EQ(bench.coordinator.droplets()[0].id, 1u);
 }
 
+TEST(Merge, ADropletThatWasOutOfSightForAMomentIsStillTheOther) {
+  Bench bench(grid_board(7, 1));
+  bench.board.amount = {{0, 1}, {6, 0.5}};
+  bench.look();
+  const auto key = bench.coordinator.start(Merge{0, 6, quick()});
+  int looks = 0;
+  bench.each_look = [&] {
+    ++looks;
+    if (looks == 5) bench.board.amount[6] = 0.1;  // shrunk below what counts as a droplet
+    if (looks == 8) bench.board.amount[6] = 0.5;  // sensed again, under a new id
+  };
+  ASSERT_TRUE(bench.run(30));
+  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
+}
+
 TEST(Merge, TwoDropletsBecomeOne) {
   Bench bench(grid_board(6, 1));
   bench.board.amount = {{0, 1}, {5, 1}};

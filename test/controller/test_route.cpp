@@ -47,7 +47,7 @@ int fewest_steps(const Layout& layout, Channel from, Channel to, const Traveller
 
 TEST(Route, IsTheShortestAroundAHole) {
   const Layout layout(grid_board(5, 3, {7}));
-  const auto route = find_route(layout, {6, {8}, false, 0, {}}, {});
+  const auto route = find_route(layout, {6, {8}, false, 0, {}, 0}, {});
   ASSERT_TRUE(route);
   EXPECT_EQ(route->size(), 5u);
   EXPECT_EQ(route->front(), 6u);
@@ -69,7 +69,7 @@ TEST(Route, AroundAMovingDropletKeepsTheConstraintsAndTakesFewestSteps) {
     }
     const Channel from = any_cell(), to = any_cell();
     if (!far_apart(from, other.cells[0])) continue;
-    const auto route = find_route(layout, {from, {to}, false, 0, {}}, {{other}, {}, {}});
+    const auto route = find_route(layout, {from, {to}, false, 0, {}, 0}, {{other}, {}, {}});
     const int fewest = fewest_steps(layout, from, to, other);
     ASSERT_EQ(route ? static_cast<int>(route->size()) - 1 : -1, fewest) << from << " to " << to;
     if (!route) continue;
@@ -88,42 +88,42 @@ TEST(Route, AroundAMovingDropletKeepsTheConstraintsAndTakesFewestSteps) {
 TEST(Route, AGivenWayIsKeptAndWaitsWhereItMust) {
   const Layout layout(grid_board(5, 4));
   const Traveller crossing{2, {2, 7, 12, 17, 17}, 0};
-  const auto route = find_route(layout, {10, {11, 12, 13, 14}, true, 0, {}}, {{crossing}, {}, {}});
+  const auto route = find_route(layout, {10, {11, 12, 13, 14}, true, 0, {}, 0}, {{crossing}, {}, {}});
   EXPECT_FALSE(route) << "the other stays beside the way";
   const Traveller ahead{2, {12, 13, 14, 9, 4}, 0};
-  const auto free = find_route(layout, {10, {11, 12}, true, 0, {}}, {{ahead}, {}, {}});
+  const auto free = find_route(layout, {10, {11, 12}, true, 0, {}, 0}, {{ahead}, {}, {}});
   ASSERT_TRUE(free);
   EXPECT_EQ(*free, (std::vector<Channel>{10, 10, 11, 12}));
 }
 
 TEST(Route, KeepsAnElectrodeFreeAroundStandingDropletsAndDeadElectrodesOut) {
   const Layout layout(grid_board(5, 4));
-  const Surroundings around{{}, {{3, {7}}}, {18}};
-  EXPECT_FALSE(find_route(layout, {0, {4}, false, 0, {}}, around))
+  const Surroundings around{{}, {{3, {7}, 0}}, {18}};
+  EXPECT_FALSE(find_route(layout, {0, {4}, false, 0, {}, 0}, around))
       << "a droplet in row 1 closes rows 0 to 2, 18 row 3";
-  EXPECT_EQ(why_no_route(layout, {0, {4}, false, 0, {}}, around), "blocked by droplet 3");
-  EXPECT_TRUE(find_route(layout, {0, {4}, false, 0, {}}, {{}, {{3, {7}}}, {}}));
-  EXPECT_TRUE(find_route(layout, {0, {4}, false, 0, {3}}, around))
+  EXPECT_EQ(why_no_route(layout, {0, {4}, false, 0, {}, 0}, around), "blocked by droplet 3");
+  EXPECT_TRUE(find_route(layout, {0, {4}, false, 0, {}, 0}, {{}, {{3, {7}, 0}}, {}}));
+  EXPECT_TRUE(find_route(layout, {0, {4}, false, 0, {3}, 0}, around))
       << "it may touch the one that it shall merge with";
-  EXPECT_FALSE(find_route(layout, {0, {4}, false, 1, {}}, {{}, {{3, {7}}}, {}}))
+  EXPECT_FALSE(find_route(layout, {0, {4}, false, 1, {}, 0}, {{}, {{3, {7}, 0}}, {}}))
       << "a large one needs more room";
 }
 
 TEST(Route, WhatIsInTheWayIsNamed) {
   const Layout line(grid_board(7, 1));
-  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}}, {{}, {{3, {3}}}, {}}), "blocked by droplet 3");
-  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}}, {{}, {{4, {6}}, {3, {3}}}, {}}),
+  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}, 0}, {{}, {{3, {3}, 0}}, {}}), "blocked by droplet 3");
+  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}, 0}, {{}, {{4, {6}, 0}, {3, {3}, 0}}, {}}),
             "blocked by droplet 3 and droplet 4");
-  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}}, {{}, {}, {2, 3}}),
+  EXPECT_EQ(why_no_route(line, {0, {6}, false, 0, {}, 0}, {{}, {}, {2, 3}}),
             "no way from channel 0 to 6: electrodes 2-3 do not answer");
   const Layout broken(grid_board(7, 1, {3}));
-  EXPECT_EQ(why_no_route(broken, {0, {6}, false, 0, {}}, {}), "no way from channel 0 to 6");
+  EXPECT_EQ(why_no_route(broken, {0, {6}, false, 0, {}, 0}, {}), "no way from channel 0 to 6");
 }
 
 TEST(Route, WhoStandsTooNearMayLeave) {
   const Layout layout(grid_board(5, 1));
-  EXPECT_TRUE(find_route(layout, {1, {3}, false, 0, {}}, {{}, {{2, {0}}}, {}}));
-  EXPECT_FALSE(find_route(layout, {2, {1}, false, 0, {}}, {{}, {{2, {0}}}, {}}));
+  EXPECT_TRUE(find_route(layout, {1, {3}, false, 0, {}, 0}, {{}, {{2, {0}, 0}}, {}}));
+  EXPECT_FALSE(find_route(layout, {2, {1}, false, 0, {}, 0}, {{}, {{2, {0}, 0}}, {}}));
 }
 
 }  // namespace
