@@ -177,13 +177,13 @@ std::optional<Channels> Coordinator::on() const {
   return on;
 }
 
-void Coordinator::note_applied(const Channels& applied) {
+void Coordinator::note_disabled(const Channels& disabled) {
   for (const Channel channel : on().value_or(Channels{})) {
-    if (applied.count(channel)) {
-      if (disabled_.erase(channel)) dead_.erase(channel);
-    } else {
+    if (disabled.count(channel)) {
       disabled_.insert(channel);
       dead_.insert(channel);
+    } else if (disabled_.erase(channel)) {
+      dead_.erase(channel);
     }
   }
 }

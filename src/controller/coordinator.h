@@ -50,8 +50,9 @@ class Coordinator {
 
   /// Electrodes that shall be on now; nothing before the first operation or manual step.
   std::optional<Channels> on() const;
-  /// The channels that the board has switched on when it was told on(): the others of these are disabled.
-  void note_applied(const Channels& applied);
+  /// The channels that the board says are disabled, after it was told on(). What else it did not switch on
+  /// has another reason: a rail that was halted switches nothing on.
+  void note_disabled(const Channels& disabled);
   /// Electrodes that were disabled or found not to answer are tried again.
   void forget_dead_electrodes();
 

@@ -22,7 +22,12 @@ BoardClient::BoardClient(ros::NodeHandle handle, const std::string& name) : hand
   set_electrodes_ = handle_.serviceClient<dmf_sim::SetElectrodes>("set_electrodes");
   explain_ = handle_.serviceClient<dmf_sim::ExplainDroplet>("explain_droplet");
   electrodes_ = handle_.subscribe<dmf_sim::ElectrodeArray>(
-      "electrodes", 1, [this](const dmf_sim::ElectrodeArrayConstPtr& message) { rail_ = to_rail(*message); });
+      "electrodes", 1, [this](const dmf_sim::ElectrodeArrayConstPtr& message) {
+        rail_ = to_rail(*message);
+        disabled_.clear();
+        for (const auto& electrode : message->electrodes)
+          if (electrode.disabled) disabled_.insert(electrode.channel);
+      });
   droplets_topic_ = handle_.subscribe<dmf_sim::DropletArray>(
       "droplets", 1, [this](const dmf_sim::DropletArrayConstPtr& message) { droplets_ = *message; });
 }
@@ -46,13 +51,12 @@ std::string BoardClient::set_rail(const controller::Rail& rail) {
   return "";
 }
 
-controller::Channels BoardClient::set_electrodes(const controller::Channels& channels) {
+void BoardClient::set_electrodes(const controller::Channels& channels) {
   dmf_sim::SetElectrodes call;
   call.request.channels = {channels.begin(), channels.end()};
   if (!set_electrodes_.call(call))
     throw std::runtime_error(set_electrodes_.getService() + " does not answer");
   if (!call.response.success) throw std::runtime_error(call.response.message);
-  return {call.response.applied_channels.begin(), call.response.applied_channels.end()};
 }
 
 std::string BoardClient::explain(controller::Channel channel) {

@@ -25,14 +25,17 @@ class BoardClient {
 
   /// "" when it was done, else why not.
   std::string set_rail(const controller::Rail& rail);
-  /// The channels that are on then. @throws std::runtime_error with the reason when nothing was switched.
-  controller::Channels set_electrodes(const controller::Channels& channels);
+  /// Electrodes that the board does not switch on.
+  const controller::Channels& disabled() const { return disabled_; }
+  /// @throws std::runtime_error with the reason when nothing was switched.
+  void set_electrodes(const controller::Channels& channels);
   /// What the board says to why the droplet on a channel does not move; "" when it can't tell.
   std::string explain(controller::Channel channel);
 
  private:
   dmf_sim::Layout layout_;
   controller::Rail rail_;
+  controller::Channels disabled_;
   dmf_sim::DropletArray droplets_;  ///< only to find the id that explain() asks for
   ros::ServiceClient set_hv_, set_electrodes_, explain_;
   ros::Subscriber capacitance_, electrodes_, droplets_topic_;

@@ -48,10 +48,10 @@ void Node::drive() {
   const auto on = coordinator_.on();
   if (!on || (has_told_ && *on == on_)) return;
   try {
-    const controller::Channels applied = board_.set_electrodes(*on);
+    board_.set_electrodes(*on);
     on_ = *on;
     has_told_ = true;
-    coordinator_.note_applied(applied);
+    coordinator_.note_disabled(board_.disabled());
   } catch (const std::runtime_error& refused) {
     ROS_WARN_THROTTLE(1, "%s", refused.what());  // told again at the next reading
   }

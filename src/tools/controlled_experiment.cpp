@@ -57,7 +57,10 @@ void ControlledExperiment::drive(controller::ProtocolRun* run) {
   const chip::Reply reply = experiment_.apply(chip::SetElectrodes{{on->begin(), on->end()}});
   if (!reply.success) return;  // as a node would: told again at the next reading
   on_ = on;
-  coordinator_.note_applied({reply.applied_channels.begin(), reply.applied_channels.end()});
+  controller::Channels disabled;
+  for (const chip::ElectrodeState& electrode : experiment_.electrodes())
+    if (electrode.disabled) disabled.insert(electrode.channel);
+  coordinator_.note_disabled(disabled);
 }
 
 void ControlledExperiment::finish(controller::ProtocolRun& run, double limit) {

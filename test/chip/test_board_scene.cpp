@@ -84,7 +84,7 @@ TEST(BoardScene, WhatCannotBeIsRefusedWithTheLine) {
   EXPECT_TRUE(holds(refused(", resolution: nan"), "chip.resolution: nan, allowed"));
   EXPECT_TRUE(holds(refused(", grids: []"), "chip.grids: given together with file, allowed: one of both"));
   EXPECT_TRUE(holds(refused(", polygons: []"), "chip.polygons: given together with file"));
-  EXPECT_TRUE(holds(refused(", file_unit: 1"), "chip.file_unit: 1, allowed: a number with a unit"));
+  EXPECT_TRUE(holds(refused(", file_unit: 1"), "chip.file_unit: 1, allowed: [1e-09, 1] m, with a unit"));
   EXPECT_TRUE(holds(refused(", leave_out: [99]"), "leave_out: channel 99, allowed: channels of the file"));
   EXPECT_TRUE(holds(refused(", gap: 12"), "chip.file: channel 10: too narrow to be drawn in by 5.4 r_c"));
   EXPECT_TRUE(holds(refused(", file_unit: 0.1 m"), "one r_c would be 0.025 m"));

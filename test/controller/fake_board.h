@@ -55,14 +55,14 @@ class FakeBoard {
     return sum;
   }
 
-  Channels set_electrodes(const Channels& channels) {
+  void set_electrodes(const Channels& channels) {
     Channels applied;
     for (const Channel channel : channels) {
       if (disabled.count(channel)) continue;
       applied.insert(channel);
       if (!on_.count(channel) && slow.count(channel)) --slow[channel];
     }
-    return on_ = applied;
+    on_ = applied;
   }
 
   void step(double seconds) {
@@ -118,8 +118,10 @@ struct Bench {
 
   void look() {
     coordinator.update(board.read(), board.rail);
-    if (const auto on = coordinator.on(); on && *on != board.on())
-      coordinator.note_applied(board.set_electrodes(*on));
+    if (const auto on = coordinator.on(); on && *on != board.on()) {
+      board.set_electrodes(*on);
+      coordinator.note_disabled(board.disabled);
+    }
     if (coordinator.on()) each_look();
   }
   /// Until all operations are over; false when that takes longer than this.

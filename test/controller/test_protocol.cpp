@@ -23,8 +23,10 @@ struct ProtocolBench : Bench {
       look();
       run.update();
       if (const auto& rail = run.wanted_rail(); rail && rail_works) board.rail = *rail;
-      if (const auto on = coordinator.on(); on && *on != board.on())
-        coordinator.note_applied(board.set_electrodes(*on));
+      if (const auto on = coordinator.on(); on && *on != board.on()) {
+        board.set_electrodes(*on);
+        coordinator.note_disabled(board.disabled);
+      }
       board.step(0.1);
     }
     return true;
