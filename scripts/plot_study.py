@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Figure of one of `dmf_study`'s studies of microparticles, from the CSV files that it leaves.
+"""Figure of one of `dmf_study`'s studies of microparticles, or of transport_velocity, from the CSV files that it leaves.
 
     scripts/plot_study.py pickup_size FOLDER            # writes FOLDER/pickup_size.png
     scripts/plot_study.py inner_flow FOLDER flow.png
@@ -216,6 +216,23 @@ def plot_inner_flow(folder):
     return figure
 
 
+def plot_transport_velocity(folder):
+    """Velocity over voltage beside what the electrowetting number alone would make of it: V^2 - V_T^2, cut off where the
+    angle saturates."""
+    table = columns_of(os.path.join(folder, "transport_velocity.csv"))
+    figure, axis = plt.subplots(figsize=(6.4, 4.2), constrained_layout=True)
+    axis.errorbar(table["voltage"], table["velocity"], yerr=table["standard_deviation"], fmt="o", capsize=3, label="measured")
+    angle = np.radians(table["contact_angle_deg"])
+    number = np.cos(angle) - np.cos(angle[0])
+    law = number * table["velocity"].max() / number.max()
+    axis.plot(table["voltage"], law, color="tab:gray", label=r"$\propto V^2 - V_T^2$, up to saturation")
+    axis.set_xlabel("voltage (V rms)")
+    axis.set_ylabel(r"velocity ($r_c/\tau$)")
+    axis.set_ylim(bottom=0)
+    axis.legend()
+    return figure
+
+
 def main(name, folder, target=None):
     if name in TRANSPORT:
         figure = plot_transport(folder, name)
@@ -223,8 +240,11 @@ def main(name, folder, target=None):
         figure = plot_forces(folder)
     elif name == "inner_flow":
         figure = plot_inner_flow(folder)
+    elif name == "transport_velocity":
+        figure = plot_transport_velocity(folder)
     else:
-        sys.exit("%s: no such study, allowed: %s" % (name, ", ".join([*TRANSPORT, "forces", "inner_flow"])))
+        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity"]
+        sys.exit("%s: no such study, allowed: %s" % (name, ", ".join(known)))
     figure.savefig(target or os.path.join(folder, name + ".png"), dpi=110)
 
 

@@ -27,7 +27,7 @@ VelocityResult run_transport_velocity(chip::Scene scene, const VelocityRun& run)
       const auto snapshot = experiment.observe();
       const engine::DropletObservation* droplet = largest_droplet(*snapshot);
       // What arrives swings in slowly: near enough to feel the electrode after it.
-      return droplet && droplet->centroid.x() > goal - 0.1 * (goal - electrodes[next - 1].centroid.x());
+      return droplet && droplet->centroid.x() > goal - 0.2 * (goal - electrodes[next - 1].centroid.x());
     };
     while (!there() && waited < run.patience) {
       step_for(0.5);

@@ -8,8 +8,8 @@ namespace dmf::tools {
 /// A droplet that is driven along a row of electrodes: the next one goes on as soon as the droplet has come
 /// to the one before.
 struct VelocityRun {
-  double voltage = 60;    ///< V rms
-  double patience = 250;  ///< tau for one electrode, before it counts as at rest
+  double voltage = 60;     ///< V rms
+  double patience = 1500;  ///< tau for one electrode, before it counts as at rest
   std::uint64_t seed = 1;
 };
 

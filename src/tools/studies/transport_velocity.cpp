@@ -12,7 +12,7 @@ namespace dmf::tools {
 void study_transport_velocity(const StudyOptions& options) {
   const std::vector<double> voltages =
       options.quick ? std::vector<double>{10, 60}
-                    : std::vector<double>{0, 10, 20, 25, 30, 35, 40, 50, 60, 70, 80, 100, 120};
+                    : std::vector<double>{10, 20, 30, 35, 40, 45, 50, 60, 70, 80, 100, 120};
   ResultTable table(options.output + "/transport_velocity_runs.csv", {"velocity", "electrodes"});
   const chip::Scene scene = scene_for(options, "transport_velocity");
   const auto key = [&](double voltage, int seed) {
