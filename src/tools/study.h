@@ -97,8 +97,8 @@ void study_crossing(
 void study_time_step(
     const StudyOptions& options);  ///< what each integrator does to every observable as the step grows
 
-/// Protocols of config/protocols on scenes, some with faults: how often each works over seeds, judged by where the
-/// droplets are in the simulation.
+/// Protocols of config/protocols on scenes, some with faults: how often each works over seeds, judged by
+/// where the droplets are in the simulation.
 void study_protocols(const StudyOptions& options);
 
 /// A_ls -> contact angle of a floating microparticle: makes its calibration file.

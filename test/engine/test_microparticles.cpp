@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "refusal.h"
 #include "droplet_on_wall.h"
 #include "engine/bodies/contact.h"
 #include "engine/simulation.h"
+#include "refusal.h"
 #include "systems.h"
 
 namespace dmf::engine {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "refusal.h"
 #include "engine/simulation.h"
+#include "refusal.h"
 #include "systems.h"
 
 namespace dmf::engine {

@@ -83,7 +83,7 @@ inline std::shared_ptr<Frame> example_frame(const chip::Scene& scene) {
     const bool on = electrode.channel == 1;
     frame->electrodes.push_back({electrode.channel, on, on ? 63.0 : 0.0, on ? 50.0 : 120.0});
   }
-  frame->rail = {63, 1000, true};
+  frame->rail = {63, 1000, true, ""};
   frame->body_forces = {{0, 0, -2}, {3, 0, 0}};
   frame->channels = {{0, 1}, {}};
   frame->steps_per_second = 321;
