@@ -222,7 +222,7 @@ double filling_volume(const Scene& scene, const Vector2d& point, double count) {
   const auto nearest = std::min_element(
       electrodes.begin(), electrodes.end(),
       [&](const auto& a, const auto& b) { return distance(point, a.outline) < distance(point, b.outline); });
-  const double side = std::sqrt(shared_area(nearest->outline, nearest->outline)) + scene.layout.gap();
+  const double side = std::sqrt(area(nearest->outline)) + scene.layout.gap();
   return count * side * side * engine::liquid_height(scene.parameters);
 }
 

@@ -22,7 +22,7 @@ struct Report {
 ///
 ///     coordinator.update(reading, rail);          // each time the board has sensed
 ///     board.set_electrodes(coordinator.on());     // when that has changed
-///     coordinator.note_applied(applied);          // what the board made of it
+///     coordinator.note_disabled(disabled);        // what the board does not switch on
 class Coordinator {
  public:
   using Key = Traffic::Key;

@@ -123,8 +123,11 @@ Walk::Result Walk::step(View& view) {
 }
 
 Walk::Result Walk::give_up_step(View& view) {
+  // Liquid that went back to an electrode which is off is held there: the next one is not at fault.
+  const bool is_held = last_cell_ != cell_ && view.wetting.at(last_cell_) >= view.wetting.at(cell_);
   const NoAnswer no_answer =
-      why_no_answer(view, cell_, goal_, std::min(1.0, wetted_area_ / view.layout.area(cell_)));
+      is_held ? NoAnswer{fmt::format("electrode {} does not let go of the droplet: stuck on", last_cell_)}
+              : why_no_answer(view, cell_, goal_, std::min(1.0, wetted_area_ / view.layout.area(cell_)));
   text_ = no_answer_ = no_answer.reason;
   if (no_answer.is_electrode) view.dead.insert(goal_);
   if (!no_answer.is_electrode || as_given_) return Result::failed;

@@ -1,5 +1,7 @@
 #include "controller_node/protocol_server.h"
 
+#include <filesystem>
+
 namespace dmf::controller_node {
 
 ProtocolServer::ProtocolServer(ros::NodeHandle handle, Workplace& workplace, std::string directory,
@@ -18,9 +20,9 @@ controller::Protocol ProtocolServer::read(const dmf_sim::RunProtocolGoal& goal) 
   if (goal.protocol.empty() == goal.yaml.empty())
     throw InvalidInput("protocol and yaml: allowed: one of both");
   if (!goal.yaml.empty()) return controller::parse_protocol(goal.yaml, "yaml", layout, max_voltage_);
-  const bool is_name = goal.protocol.find_first_of("/.") == std::string::npos;
-  return controller::load_protocol(is_name ? directory_ + "/" + goal.protocol + ".yaml" : goal.protocol,
-                                   layout, max_voltage_);
+  std::filesystem::path file = goal.protocol;
+  if (!file.has_parent_path()) file = std::filesystem::path(directory_) / file.replace_extension(".yaml");
+  return controller::load_protocol(file.string(), layout, max_voltage_);
 }
 
 void ProtocolServer::start(Server::GoalHandle goal) {

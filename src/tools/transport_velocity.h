@@ -19,8 +19,8 @@ struct VelocityResult {
   double electrodes;  ///< that it came to, of those after the first
 };
 
-/// @param scene  a row of electrodes of rising channels, the droplet on the first one; its schedule is left
-/// out.
+/// @param scene  a row of three electrodes or more towards +x, the droplet on the first one; its schedule is
+/// left out.
 VelocityResult run_transport_velocity(chip::Scene scene, const VelocityRun& run);
 
 }  // namespace dmf::tools

@@ -158,7 +158,7 @@ class ControllerTest(unittest.TestCase):
         self.assertIn("to: 40", refused.stdout)
 
     def test_protocols_run_from_file_and_text(self):
-        for goal in (RunProtocolGoal(protocol="walk"),
+        for goal in (RunProtocolGoal(protocol="walk"), RunProtocolGoal(protocol="walk.yaml"),
                      RunProtocolGoal(yaml="steps:\n  - move: {channel: 1, to: 2}\n  - wait: 0.1 s\n")):
             handle = self.protocol.run(goal)
             result = self.check(handle, GoalStatus.SUCCEEDED, "2 steps done")

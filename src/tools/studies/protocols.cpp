@@ -6,6 +6,7 @@
 
 #include "chip/configuration.h"
 #include "tools/controlled_experiment.h"
+#include "tools/saved_run.h"
 #include "tools/study.h"
 
 namespace dmf::tools {
@@ -109,9 +110,7 @@ void study_protocols(const StudyOptions& options) {
   }
   run_jobs("protocols", jobs, options, table);
 
-  std::FILE* summary = std::fopen((options.output + "/protocols.csv").c_str(), "w");
-  if (!summary) throw std::runtime_error(options.output + "/protocols.csv can't be written");
-  fmt::print(summary, "protocol,runs,worked,claimed,clock_s,clock_s_deviation\n");
+  std::string summary = "protocol,runs,worked,claimed,clock_s,clock_s_deviation\n";
   fmt::print("{:<16} {:>5} {:>7} {:>8} {:>16}\n", "protocol", "runs", "worked", "claimed", "clock, s");
   for (const Trial& trial : all) {
     if (!is_wanted(options, trial.name)) continue;
@@ -126,10 +125,10 @@ void study_protocols(const StudyOptions& options) {
     const MeanAndSpread clock = mean_and_spread(clocks);
     fmt::print("{:<16} {:>5} {:>6.0f}% {:>7.0f}% {:>9.1f} +- {:.1f}\n", trial.name, options.seeds,
                100 * worked / options.seeds, 100 * claimed / options.seeds, clock.mean, clock.deviation);
-    fmt::print(summary, "{},{},{:g},{:g},{:.4g},{:.4g}\n", trial.name, options.seeds, worked, claimed,
-               clock.mean, clock.deviation);
+    summary += fmt::format("{},{},{:g},{:g},{:.4g},{:.4g}\n", trial.name, options.seeds, worked, claimed,
+                           clock.mean, clock.deviation);
   }
-  std::fclose(summary);
+  replace_file(options.output + "/protocols.csv", summary);
 }
 
 }  // namespace dmf::tools
