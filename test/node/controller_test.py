@@ -158,8 +158,9 @@ class ControllerTest(unittest.TestCase):
         self.assertIn("to: 40", refused.stdout)
 
     def test_protocols_run_from_file_and_text(self):
-        for goal in (RunProtocolGoal(protocol="walk"), RunProtocolGoal(protocol="walk.yaml"),
-                     RunProtocolGoal(yaml="steps:\n  - move: {channel: 1, to: 2}\n  - wait: 0.1 s\n")):
+        back = "steps:\n  - move: {channel: 1, to: 0}\n  - wait: 0.1 s\n"
+        for goal in (RunProtocolGoal(protocol="walk"), RunProtocolGoal(yaml=back),
+                     RunProtocolGoal(protocol="walk.yaml")):
             handle = self.protocol.run(goal)
             result = self.check(handle, GoalStatus.SUCCEEDED, "2 steps done")
             self.assertEqual(result.steps_done, 2)
