@@ -35,6 +35,9 @@ std_msgs::ColorRGBA color(double r, double g, double b, double a = 1) {
   return result;
 }
 
+const std_msgs::ColorRGBA kDisabledPad = color(0.1, 0.1, 0.11);
+const std_msgs::ColorRGBA kAlarm = color(1, 0.3, 0.25);
+
 /// Grey without voltage to orange at the board's limit.
 std_msgs::ColorRGBA voltage_color(double voltage, double max_voltage) {
   const double f = std::clamp(std::abs(voltage) / max_voltage, 0.0, 1.0);
@@ -96,19 +99,23 @@ Marker top_plate(const Frame& frame, const ConversionContext& context) {
   return result;
 }
 
-Marker pad(const chip::Electrode& electrode, double voltage, const Frame& frame,
+Marker pad(const chip::Electrode& electrode, const chip::ElectrodeState& state, const Frame& frame,
            const ConversionContext& context) {
   const double s = context.display_length();
   Marker result = marker("electrodes", electrode.channel, Marker::TRIANGLE_LIST, frame);
   result.scale.x = result.scale.y = result.scale.z = 1;
-  result.color = voltage_color(voltage, context.scene.electrowetting.max_voltage);
+  // A disabled channel that is stuck on still has a voltage, which is what matters to the liquid.
+  result.color = state.disabled && state.voltage == 0
+                     ? kDisabledPad
+                     : voltage_color(state.voltage, context.scene.electrowetting.max_voltage);
   for (const Eigen::Vector2d& corner : triangulate(electrode.outline)) {
     result.points.push_back(point(s * corner.x(), s * corner.y(), s * (context.plate_z() + kPadHeight)));
   }
   return result;
 }
 
-Marker pad_label(const chip::Electrode& electrode, const Frame& frame, const ConversionContext& context) {
+Marker pad_label(const chip::Electrode& electrode, const chip::ElectrodeState& state, const Frame& frame,
+                 const ConversionContext& context) {
   const double s = context.display_length();
   // A third of the pad's height in y, so that digits stay inside; at its lower edge, so that droplets don't
   // hide it.
@@ -122,8 +129,25 @@ Marker pad_label(const chip::Electrode& electrode, const Frame& frame, const Con
   result.pose.position = point(s * electrode.centroid.x(), s * (lower + 0.5 * height),
                                s * (context.plate_z() + kPadHeight + 0.5 * height));
   result.scale.z = s * height;
-  result.color = color(1, 1, 1);
+  result.color = state.disabled ? kAlarm : color(1, 1, 1);
   result.text = std::to_string(electrode.channel);
+  return result;
+}
+
+/// What the board's own display would show, in front of the plate.
+Marker rail_label(const Frame& frame, const ConversionContext& context) {
+  const engine::Domain& domain = context.scene.parameters.domain;
+  const chip::RailState& rail = frame.rail;
+  const double s = context.display_length();
+  const double height = std::clamp(0.04 * domain.size().x(), 1.0, 6.0);  // r_c
+  Marker result = marker("rail", 0, Marker::TEXT_VIEW_FACING, frame);
+  result.pose.position = point(s * 0.5 * (domain.lower.x() + domain.upper.x()),
+                               s * (domain.lower.y() - 1.5 * height), s * context.plate_z());
+  result.scale.z = s * height;
+  result.color = rail.halted.empty() ? color(1, 1, 1) : kAlarm;
+  result.text = !rail.halted.empty() ? "rail halted: " + rail.halted
+                : rail.enabled       ? fmt::format("rail {:g} V, {:g} Hz", rail.voltage, rail.frequency)
+                                     : std::string("rail off");
   return result;
 }
 
@@ -231,9 +255,10 @@ MarkerArray chip_markers(const Frame& frame, const ConversionContext& context) {
   if (context.scene.parameters.domain.has_top_plate()) array.markers.push_back(top_plate(frame, context));
   const auto& electrodes = context.scene.layout.electrodes();
   for (std::size_t i = 0; i < electrodes.size(); ++i) {
-    array.markers.push_back(pad(electrodes[i], frame.electrodes.at(i).voltage, frame, context));
-    array.markers.push_back(pad_label(electrodes[i], frame, context));
+    array.markers.push_back(pad(electrodes[i], frame.electrodes.at(i), frame, context));
+    array.markers.push_back(pad_label(electrodes[i], frame.electrodes.at(i), frame, context));
   }
+  if (!electrodes.empty()) array.markers.push_back(rail_label(frame, context));
   return array;
 }
 

@@ -47,7 +47,7 @@ class MarkersTest : public ::testing::Test {
 
 TEST_F(MarkersTest, EachElectrodeHasItsNumberAndAColourOfItsVoltage) {
   const auto markers = by_id(chip_markers(*frame_, context_));
-  ASSERT_EQ(markers.size(), 1u + 2 * 4);
+  ASSERT_EQ(markers.size(), 1u + 2 * 4 + 1) << "the plate, four pads with labels, the rail";
   EXPECT_EQ(markers.at({"plate", 0}).type, Marker::CUBE);
   for (int channel = 0; channel < 4; ++channel) {
     const Marker& label = markers.at({"electrode_labels", channel});
@@ -57,6 +57,31 @@ TEST_F(MarkersTest, EachElectrodeHasItsNumberAndAColourOfItsVoltage) {
   }
   EXPECT_EQ(markers.at({"electrodes", 0}).color, markers.at({"electrodes", 2}).color);
   EXPECT_NE(markers.at({"electrodes", 0}).color, markers.at({"electrodes", 1}).color) << "63 V";
+}
+
+TEST_F(MarkersTest, ADisabledElectrodeIsNotTakenForOneThatIsOff) {
+  auto before = by_id(chip_markers(*frame_, context_));
+  frame_->electrodes[2].disabled = true;
+  auto after = by_id(chip_markers(*frame_, context_));
+  EXPECT_NE(after.at({"electrodes", 2}).color, before.at({"electrodes", 2}).color);
+  EXPECT_NE(after.at({"electrode_labels", 2}).color, before.at({"electrode_labels", 2}).color);
+  EXPECT_EQ(after.at({"electrodes", 0}).color, before.at({"electrodes", 0}).color);
+  frame_->electrodes[1].disabled = true;
+  after = by_id(chip_markers(*frame_, context_));
+  EXPECT_EQ(after.at({"electrodes", 1}).color, before.at({"electrodes", 1}).color)
+      << "it is stuck on: its voltage is there all the same";
+}
+
+TEST_F(MarkersTest, TheRailSaysWhatItDoesAndWhyItWasHalted) {
+  const auto rail = [this] { return by_id(chip_markers(*frame_, context_)).at({"rail", 0}); };
+  const Marker on = rail();
+  EXPECT_EQ(on.text, "rail 63 V, 1000 Hz");
+  EXPECT_LT(on.pose.position.y, scene_.parameters.domain.lower.y() * 0.02) << "in front of the plate";
+  frame_->rail.enabled = false;
+  EXPECT_EQ(rail().text, "rail off");
+  frame_->rail.halted = "channel 3 is shorted";
+  EXPECT_EQ(rail().text, "rail halted: channel 3 is shorted");
+  EXPECT_NE(rail().color, on.color);
 }
 
 TEST_F(MarkersTest, PadsLieOnThePlateAtDisplayScale) {
