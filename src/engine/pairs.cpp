@@ -52,6 +52,12 @@ struct BodyPatch {
   Bounds bounds;
 };
 
+/// All patches of a microparticle: most cells are near none of them.
+struct PatchedBody {
+  std::vector<BodyPatch> patches;
+  Bounds bounds;
+};
+
 Pairs::Pairs(const Parameters& parameters)
     : domain_(parameters.domain),
       range_(parameters.liquid.cutoff_radius + parameters.list_skin),
@@ -163,7 +169,7 @@ void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedV
 
 void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const Plates& wall) {
   forget_bodies();
-  std::vector<BodyPatch> patches;
+  std::vector<PatchedBody> patched;
   std::uint32_t most = 0;
   for (std::size_t k = 0; k < bodies.all().size(); ++k) {
     const Microparticle& particle = bodies.all()[k];
@@ -176,6 +182,7 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
       wall.append_runs(centre.array() - reach, centre.array() + reach, smooth_neighbours_.back().wall);
       continue;
     }
+    PatchedBody& body = patched.emplace_back();
     std::uint32_t begin = particle.first_bead;
     for (const std::uint32_t patch_end : particle.patch_ends) {
       if (begin == particle.first_bead || begin - body_blocks_.back().begin >= block_size) {
@@ -189,38 +196,46 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
       find_runs(block, patch, bodies.beads().listed, wall);
       most = std::max({most, block.slots, block.wall_slots});
       block.cells.push_back(patch);
-      patches.push_back({patch.begin, patch.end, bounds_of(bodies.beads().listed, patch.begin, patch.end)});
+      body.patches.push_back(
+          {patch.begin, patch.end, bounds_of(bodies.beads().listed, patch.begin, patch.end)});
+      body.bounds.include(body.patches.back().bounds);
     }
   }
 #pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     blocks_[b].body_runs.clear();
     blocks_[b].body_slots = 0;
-    for (NeighbourCell& cell : blocks_[b].cells) find_body_runs(blocks_[b], cell, beads.listed, patches);
+    for (NeighbourCell& cell : blocks_[b].cells) find_body_runs(blocks_[b], cell, beads.listed, patched);
     most = std::max(most, blocks_[b].body_slots);
   }
   require_slots(most);
 }
 
 void Pairs::find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
-                           const std::vector<BodyPatch>& patches) const {
-  const Bounds bounds = bounds_of(listed, cell.begin, cell.end);
-  cell.first_body_run = static_cast<std::uint32_t>(block.body_runs.size());
-  std::uint32_t count = 0;
-  for (const BodyPatch& patch : patches) {
-    Eigen::Vector3f apart = 0.5f * (patch.bounds.lower + patch.bounds.upper - bounds.lower - bounds.upper);
-    const Eigen::Vector3f reach =
-        0.5f * (patch.bounds.upper - patch.bounds.lower + bounds.upper - bounds.lower);
-    int image[3] = {0, 0, 0};
+                           const std::vector<PatchedBody>& bodies) const {
+  const Bounds of_cell = bounds_of(listed, cell.begin, cell.end);
+  int image[3] = {0, 0, 0};  // of what was asked for last
+  const auto in_reach = [&](const Bounds& other) {
+    Eigen::Vector3f apart = 0.5f * (other.lower + other.upper - of_cell.lower - of_cell.upper);
+    const Eigen::Vector3f reach = 0.5f * (other.upper - other.lower + of_cell.upper - of_cell.lower);
     for (int axis = 0; axis < 3; ++axis)
       if (domain_.periodic(axis)) {
         const float period = static_cast<float>(domain_.size()[axis]);
         image[axis] = -static_cast<int>(std::lround(apart[axis] / period));
         apart[axis] += static_cast<float>(image[axis]) * period;
       }
-    if (((apart.cwiseAbs() - reach).array() > static_cast<float>(range_)).any()) continue;
-    block.body_runs.push_back({patch.begin, patch.end, PeriodicImages::index(image[0], image[1], image[2])});
-    count += patch.end - patch.begin;
+    return !((apart.cwiseAbs() - reach).array() > static_cast<float>(range_)).any();
+  };
+  cell.first_body_run = static_cast<std::uint32_t>(block.body_runs.size());
+  std::uint32_t count = 0;
+  for (const PatchedBody& body : bodies) {
+    if (!in_reach(body.bounds)) continue;
+    for (const BodyPatch& patch : body.patches) {
+      if (!in_reach(patch.bounds)) continue;
+      block.body_runs.push_back(
+          {patch.begin, patch.end, PeriodicImages::index(image[0], image[1], image[2])});
+      count += patch.end - patch.begin;
+    }
   }
   cell.end_body_run = static_cast<std::uint32_t>(block.body_runs.size());
   block.body_slots = std::max(block.body_slots, count);

@@ -11,7 +11,7 @@
 
 namespace dmf::engine {
 
-struct BodyPatch;
+struct PatchedBody;
 
 /// What is near a smooth sphere.
 struct SmoothNeighbours {
@@ -68,7 +68,7 @@ class Pairs {
   void find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
                  const Plates& wall) const;
   void find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
-                      const std::vector<BodyPatch>& patches) const;
+                      const std::vector<PatchedBody>& bodies) const;
 
   Domain domain_;
   double range_;  ///< r_c + skin
