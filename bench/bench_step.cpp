@@ -1,8 +1,9 @@
 // What a step costs, in nanoseconds per moving bead and step, and what the scalar double reference costs for
 // the same. scripts/bench.sh runs this and lays the results side by side.
-//   bench_step [--threads=1,2] [--states=FOLDER] [--benchmark_filter=W3] [--benchmark_repetitions=5 ...]
+//   bench_step [--threads=1,2] [--states=FOLDER] [--skin=0.25] [--benchmark_filter=W3] [...]
 //     --threads  thread counts of the best kernel; the others run with one. Default: 1 and all cores
 //     --states   where melted liquids are kept for the next call; default: every benchmark melts its own
+//     --skin     list_skin, r_c, in place of the engine's default
 // Names are workload/kernel/threads:n. Every kernel and thread count starts from the same melted liquid and
 // makes the same number of steps, so that repetitions differ by timing noise only.
 #include <benchmark/benchmark.h>
@@ -40,6 +41,7 @@ struct Workload {
 struct Options {
   std::vector<int> threads;
   std::string states;  ///< folder; empty: keep none
+  double list_skin = Parameters().list_skin;
 };
 
 Parameters bulk(double size) {
@@ -184,12 +186,15 @@ void add_cost(const Workload& workload, const std::string& kernel, int threads, 
 
 void add_all(const Options& options) {
   const std::vector<std::string> kernels = available_kernels();
-  for (const Workload& workload : workloads()) {
+  for (Workload workload : workloads()) {
+    workload.parameters.list_skin = options.list_skin;
     for (const int threads : options.threads) add_cost(workload, kernels.front(), threads, options.states);
     for (std::size_t k = 1; k < kernels.size(); ++k) add_cost(workload, kernels[k], 1, options.states);
   }
-  for (const Workload& workload : size_sweep())
+  for (Workload workload : size_sweep()) {
+    workload.parameters.list_skin = options.list_skin;
     for (const int threads : options.threads) add_cost(workload, kernels.front(), threads, options.states);
+  }
   const Workload largest = workloads().back();
   add(largest.name + "/memory", 1, 20, [largest](benchmark::State& state) { memory(state, largest); });
 }
@@ -202,6 +207,8 @@ Options own_options(int argc, char** argv) {
                       value = argument.substr(key.size());
     if (key == "--states=") {
       options.states = value;
+    } else if (key == "--skin=") {
+      options.list_skin = std::atof(value.c_str());
     } else if (key == "--threads=") {
       options.threads.clear();
       std::istringstream list(value);
@@ -210,7 +217,7 @@ Options own_options(int argc, char** argv) {
       if (options.threads.empty() || *std::min_element(options.threads.begin(), options.threads.end()) < 1)
         throw std::invalid_argument(argument + ", allowed: counts of 1 or more, with commas between");
     } else {
-      throw std::invalid_argument(argument + ", allowed: --threads=, --states= and those of --help");
+      throw std::invalid_argument(argument + ", allowed: --threads=, --states=, --skin= and those of --help");
     }
   }
   std::sort(options.threads.begin(), options.threads.end());
