@@ -229,6 +229,8 @@ LiquidParameters read_liquid(const YamlReader& root) {
   liquid.repulsion = section->number("repulsion", {}, liquid.repulsion);
   liquid.repulsion_radius = section->number("repulsion_radius", {}, liquid.repulsion_radius);
   liquid.random_amplitude = section->number("random_amplitude", {}, liquid.random_amplitude);
+  liquid.dissipation_exponent = section->number("dissipation_exponent", {}, liquid.dissipation_exponent);
+  liquid.dissipation_radius = section->number("dissipation_radius", {}, liquid.dissipation_radius);
   liquid.temperature = section->number("temperature", {}, liquid.temperature);
   liquid.initial_density = section->number("initial_density", {}, liquid.initial_density);
   liquid.bulk_density = section->number("bulk_density", {}, liquid.bulk_density);

@@ -12,8 +12,14 @@ std::vector<std::string> available_kernels() {
   return names;
 }
 
+namespace {
+Kernels kernels_named(const std::string& name, DissipativeWeight weight) {
+  return name == "reference" ? reference_kernels(weight) : select_kernels(name, weight);
+}
+}  // namespace
+
 Forces::Forces(const Parameters& parameters, const std::string& kernel)
-    : kernels_(kernel == "reference" ? reference_kernels() : select_kernels(kernel)),
+    : kernels_(kernels_named(kernel, liquid_law(parameters.liquid, parameters.time_step).weight())),
       kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
       constants_{} {
   constants_.laws = pair_table(parameters);

@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "engine/kernels/lanes-inl.h"
 #include "engine/pair_law.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,7 +24,7 @@ HWY_INLINE Real density_weight(Real r, Real inverse_repulsion_radius) {
   return w * w;
 }
 
-/// Conservative part of mdpd_force, Lan (2.36): A w_c + B (rho_i + rho_j) w_d.
+/// Conservative part of mdpd_force, Lan (2.36): A w_c + B (rho_i + rho_j) w_d, for r < r_c.
 template <class Real>
 HWY_INLINE Real conservative_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum) {
   const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
@@ -52,10 +53,47 @@ HWY_INLINE Real mdpd_force(const MdpdLaw<Real>& law, Real attraction, Real r, Re
   return conservative_force(law, attraction + random - dissipative, r, density_sum);
 }
 
-/// One part of mdpd_force, or all of it. What a part does not use costs nothing: the compiler leaves it out.
+/// w_R = (1 - r/r_D)^(s/2), 0 beyond r_D. Powers of fourth roots: exact roots and products are the same bits
+/// on every processor, a library's pow is not.
+template <class Real>
+HWY_INLINE Real random_weight(const MdpdLaw<Real>& law, Real r) {
+  const Real root = square_root(square_root(maximum(Real(1) - r * law.inverse_dissipation_radius, Real(0))));
+  Real weight = root;
+  for (int k = 1; k < law.twice_dissipation_exponent; ++k) weight = weight * root;
+  return weight;
+}
+
+/// pair_force() with a weight of friction and noise of its own; for any r.
 template <PairForce part, class Real>
+HWY_INLINE Real weighted_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum,
+                               Real approach, Real zeta) {
+  const auto conservative = [&]() HWY_ATTR {
+    // Not below r_c: the attraction ends there, the friction may not.
+    const Real w_c = maximum(Real(1) - r * law.inverse_cutoff_radius, Real(0));
+    const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
+    return w_c * attraction + law.repulsion * density_sum * w_d;
+  };
+  if constexpr (part == PairForce::conservative) {
+    return conservative();
+  } else {
+    const Real w_r = random_weight(law, r);
+    const Real random = w_r * (law.random_amplitude * zeta);
+    const Real friction = Real(0) - w_r * w_r * (law.friction * approach);
+    if constexpr (part == PairForce::random)
+      return random;
+    else if constexpr (part == PairForce::friction)
+      return friction;
+    else
+      return conservative() + random + friction;
+  }
+}
+
+/// One part of mdpd_force, or all of it. What a part does not use costs nothing: the compiler leaves it out.
+template <PairForce part, DissipativeWeight weight, class Real>
 HWY_INLINE Real pair_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum, Real approach,
                            Real zeta) {
+  if constexpr (weight == DissipativeWeight::power)
+    return weighted_force<part>(law, attraction, r, density_sum, approach, zeta);
   const Real w_c = Real(1) - r * law.inverse_cutoff_radius;
   if constexpr (part == PairForce::conservative)
     return conservative_force(law, attraction, r, density_sum);

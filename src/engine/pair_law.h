@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "engine/parameters.h"
@@ -9,17 +10,35 @@ namespace dmf::engine {
 /// each by itself.
 enum class PairForce { all, conservative, random, friction };
 
+/// How friction and noise fade with distance: w_D = w_R^2 = (1 - r/r_D)^s (Liu eq. 8).
+enum class DissipativeWeight {
+  shared,  ///< s = 2 and r_D = r_c: w_R is the weight of the attraction, and costs nothing
+  power
+};
+
 /// Coefficients of the many-body DPD law between two species, reduced units, as the kernels use them.
 /// `Real` is double, float, or lanes. B must be the same for all pairs that share a density, otherwise the
 /// force has no potential (Warren 2013).
 template <class Real>
 struct MdpdLaw {
-  Real attraction;                ///< A, < 0
-  Real repulsion;                 ///< B, >= 0
-  Real inverse_cutoff_radius;     ///< 1 / r_c
-  Real inverse_repulsion_radius;  ///< 1 / r_d
-  Real friction;                  ///< gamma = phi^2 / (2 k_BT)
-  Real random_amplitude;          ///< phi / sqrt(dt)
+  Real attraction;                  ///< A, < 0
+  Real repulsion;                   ///< B, >= 0
+  Real inverse_cutoff_radius;       ///< 1 / r_c
+  Real inverse_repulsion_radius;    ///< 1 / r_d
+  Real friction;                    ///< gamma = phi^2 / (2 k_BT)
+  Real random_amplitude;            ///< phi / sqrt(dt)
+  Real inverse_dissipation_radius;  ///< 1 / r_D
+  int twice_dissipation_exponent;   ///< 2 s
+
+  /// How far one bead feels another, r_c.
+  double range() const {
+    return 1.0 / std::min(double(inverse_cutoff_radius), double(inverse_dissipation_radius));
+  }
+  DissipativeWeight weight() const {
+    return twice_dissipation_exponent == 4 && inverse_dissipation_radius == inverse_cutoff_radius
+               ? DissipativeWeight::shared
+               : DissipativeWeight::power;
+  }
 };
 
 /// The liquid's law; walls share it but for their own attraction.
@@ -29,7 +48,9 @@ inline MdpdLaw<double> liquid_law(const LiquidParameters& liquid, double time_st
           1.0 / liquid.cutoff_radius,
           1.0 / liquid.repulsion_radius,
           liquid.random_amplitude * liquid.random_amplitude / (2.0 * liquid.temperature),
-          liquid.random_amplitude / std::sqrt(time_step)};
+          liquid.random_amplitude / std::sqrt(time_step),
+          1.0 / liquid.dissipation_radius,
+          static_cast<int>(std::lround(2 * liquid.dissipation_exponent))};
 }
 
 /// 15 / (2 pi r_d^3): turns a sum of density_weight into a density (Lan 2.38).

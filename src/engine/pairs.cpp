@@ -60,7 +60,7 @@ struct PatchedBody {
 
 Pairs::Pairs(const Parameters& parameters)
     : domain_(parameters.domain),
-      range_(parameters.liquid.cutoff_radius + parameters.list_skin),
+      range_(parameters.liquid.range() + parameters.list_skin),
       squared_half_skin_(static_cast<float>(0.25 * parameters.list_skin * parameters.list_skin)) {}
 
 void Pairs::lay_grid(const AlignedVector<Record>& positions) {

@@ -26,12 +26,20 @@ class RangeCheck {
 constexpr double tiny = 1e-9;
 
 void check_liquid(const LiquidParameters& liquid, RangeCheck& check) {
-  check.within("liquid.attraction", liquid.attraction, -200, -tiny,
-               "-200 up to below 0 (attraction is negative)");
-  check.within("liquid.repulsion", liquid.repulsion, tiny, 500, "above 0 up to 500");
+  if (liquid.repulsion == 0) {
+    check.within("liquid.attraction", liquid.attraction, 0, 200, "0 to 200 with repulsion 0 (plain DPD)");
+  } else {
+    check.within("liquid.attraction", liquid.attraction, -200, -tiny,
+                 "-200 up to below 0 (attraction is negative), or with repulsion 0 0 to 200 (plain DPD)");
+    check.within("liquid.repulsion", liquid.repulsion, tiny, 500, "above 0 up to 500, or 0 (plain DPD)");
+  }
   check.within("liquid.cutoff_radius", liquid.cutoff_radius, 1, 1, "1 (it is the unit of length)");
   check.within("liquid.repulsion_radius", liquid.repulsion_radius, 0.3, 1, "0.3 to 1 (r_c)");
   check.within("liquid.random_amplitude", liquid.random_amplitude, 0, 50, "0 to 50");
+  const double twice = 2 * liquid.dissipation_exponent;
+  check.within("liquid.dissipation_exponent", liquid.dissipation_exponent, 0.5,
+               std::nearbyint(twice) == twice ? 4 : 0, "0.5, 1, 1.5 and so on up to 4");
+  check.within("liquid.dissipation_radius", liquid.dissipation_radius, 0.5, 2.5, "0.5 to 2.5 (r_c)");
   check.within("liquid.temperature", liquid.temperature, tiny, 10, "above 0 up to 10 (k_BT)");
   check.within("liquid.initial_density", liquid.initial_density, 1, 12, "1 to 12 (beads per r_c^3)");
   check.within("liquid.bulk_density", liquid.bulk_density, 1, 20, "1 to 20 (beads per r_c^3)");
@@ -90,7 +98,7 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("wall.top_contact_angle", parameters.wall.top_contact_angle, tiny, 180,
                "above 0 up to 180 (degrees), within the calibration");
   check_microparticles(parameters.microparticles, check);
-  check_domain(parameters.domain, parameters.liquid.cutoff_radius + parameters.list_skin, check);
+  check_domain(parameters.domain, parameters.liquid.range() + parameters.list_skin, check);
   check.within("time_step", parameters.time_step, tiny, 0.1, "above 0 up to 0.1 (tau)");
   check.within("integrator_lambda", parameters.integrator_lambda, 0.5, 1, "0.5 to 1");
   check.within("list_skin", parameters.list_skin, 0.05, 1, "0.05 to 1 (r_c)");

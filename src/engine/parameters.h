@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -18,14 +19,15 @@ using dmf::InvalidInput;
 /// table 2.2.
 
 struct LiquidParameters {
-  double attraction = -40.0;  ///< A_ll; (-200, 0)
-  double repulsion = 25.0;    ///< B_ll, also used with the wall (B_lw); (0, 500)
-  double cutoff_radius =
-      1.0;  ///< r_c, range of attraction, dissipation and noise; fixed at 1, it is the unit
-  double repulsion_radius = 0.75;  ///< r_d, range of the many-body repulsion and of its density; (0.3, 1]
-  double random_amplitude = 6.0;   ///< phi; phi^2 = 2 gamma k_BT, so gamma = 18; [0, 50]
-  double temperature = 1.0;        ///< k_BT; (0, 10]
-  double initial_density = 6.0;    ///< beads per r_c^3 when a droplet is placed; [1, 12]
+  double attraction = -40.0;        ///< A_ll; (-200, 0). With B_ll = 0 plain DPD's repulsion a; [0, 200]
+  double repulsion = 25.0;          ///< B_ll, also used with the wall (B_lw); (0, 500), or 0: plain DPD
+  double cutoff_radius = 1.0;       ///< r_c, range of attraction; fixed at 1, it is the unit
+  double repulsion_radius = 0.75;   ///< r_d, range of the many-body repulsion and of its density; (0.3, 1]
+  double random_amplitude = 6.0;    ///< phi; phi^2 = 2 gamma k_BT, so gamma = 18; [0, 50]
+  double dissipation_exponent = 2;  ///< s in w_D = (1 - r/r_D)^s (Liu eq. 8); multiples of 1/2 from 1/2 to 4
+  double dissipation_radius = 1;    ///< r_D, range of friction and noise; [0.5, 2.5]
+  double temperature = 1.0;         ///< k_BT; (0, 10]
+  double initial_density = 6.0;     ///< beads per r_c^3 when a droplet is placed; [1, 12]
 
   // What the numbers above lead to, measured (`dmf_study liquid`). They enter no force: volumes and
   // half-density surfaces are reported with the density, SI units derived with density and tension, and
@@ -36,6 +38,9 @@ struct LiquidParameters {
   /// That liquid of bulk density seems to keep from a plate, r_c; [0, 1]. It is 0.0 at 70 degrees, 0.17 at
   /// 110 and 0.28 at 130 (`dmf_study plates`).
   double wall_distance = 0.2;
+
+  /// How far one bead feels another, r_c.
+  double range() const { return std::max(cutoff_radius, dissipation_radius); }
 };
 
 struct WallParameters {

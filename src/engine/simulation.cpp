@@ -43,7 +43,7 @@ struct Simulation::State {
       : parameters(checked(p)),
         curve(std::move(c)),
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
-        wall(parameters.domain, parameters.wall, parameters.liquid.cutoff_radius + parameters.list_skin),
+        wall(parameters.domain, parameters.wall, parameters.liquid.range() + parameters.list_skin),
         microparticles(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),

@@ -28,6 +28,7 @@ Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
   parameters.integrator = how.integrator;
   parameters.list_skin = how.list_skin;
   parameters.seed = how.seed;
+  parameters.liquid = how.liquid;
   return parameters;
 }
 
@@ -36,6 +37,32 @@ engine::ContactAngleCurve no_wall() { return engine::ContactAngleCurve::lan2016(
 double measuring_time(const LiquidRun& how, double usual, double quick) {
   return how.measure > 0 ? how.measure : how.quick ? quick : usual;
 }
+
+/// How far beads have come since the first look, in a periodic cube that they must not cross half of between
+/// two looks.
+class Displacements {
+ public:
+  explicit Displacements(double size) : size_(size) {}
+  void follow(const std::vector<Eigen::Vector3f>& positions) {
+    total_.resize(positions.size(), Vector3d::Zero());
+    for (std::size_t k = 0; k < last_.size(); ++k) {
+      Vector3d way = (positions[k] - last_[k]).cast<double>();
+      for (int axis = 0; axis < 3; ++axis) way[axis] -= size_ * std::nearbyint(way[axis] / size_);
+      total_[k] += way;
+    }
+    last_ = positions;
+  }
+  double mean_square() const {
+    double sum = 0;
+    for (const Vector3d& way : total_) sum += way.squaredNorm();
+    return sum / static_cast<double>(total_.size());
+  }
+
+ private:
+  double size_;
+  std::vector<Eigen::Vector3f> last_;
+  std::vector<Vector3d> total_;
+};
 
 /// Steps for `settle` tau, then calls look() every `interval` tau for `measure` tau.
 template <class Look>
@@ -107,7 +134,7 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
 
 BulkResult run_bulk(const LiquidRun& how) {
   // A whole number of lattice cells at the liquid's own density.
-  const double size = 14 * std::cbrt(4 / Parameters{}.liquid.bulk_density);
+  const double size = 14 * std::cbrt(4 / how.liquid.bulk_density);
   // A whole number of steps, about 0.1 tau.
   const double interval = how.time_step * std::max(1.0, std::round(0.1 / how.time_step));
   Parameters parameters = periodic_box(how, Vector3d::Constant(size));
@@ -116,8 +143,16 @@ BulkResult run_bulk(const LiquidRun& how) {
   constexpr int modes = 12;  // 3 wave vectors, 2 transverse directions, sine and cosine
   std::vector<std::array<double, modes>> history;
   double temperature = 0, pressure = 0;
-  run(simulation, how.quick ? 5 : 30, measuring_time(how, 400, 30), interval, [&] {
+  Displacements displacements(size);
+  const double measure = measuring_time(how, 400, 30);
+  double early = 0, early_time = 0;
+  run(simulation, how.quick ? 5 : 30, measure, interval, [&] {
     const auto snapshot = simulation.observe({true, false, true});
+    displacements.follow(snapshot->positions);
+    if (early_time == 0 && static_cast<double>(history.size()) * interval > measure / 4) {
+      early = displacements.mean_square();
+      early_time = static_cast<double>(history.size()) * interval;
+    }
     std::array<double, modes> wave{};
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k)
       for (int axis = 0; axis < 3; ++axis) {
@@ -150,7 +185,10 @@ BulkResult run_bulk(const LiquidRun& how) {
   }
   const double slope = (n * sum_tl - sum_t * sum_l) / (n * sum_tt - sum_t * sum_t);
   const double wave_number = 2 * pi / size, looks = static_cast<double>(history.size());
-  return {density, temperature / looks, pressure / looks, -slope * density / (wave_number * wave_number)};
+  const double diffusivity =
+      (displacements.mean_square() - early) / (6 * ((looks - 1) * interval - early_time));
+  return {density, temperature / looks, pressure / looks, -slope * density / (wave_number * wave_number),
+          diffusivity};
 }
 
 }  // namespace dmf::tools

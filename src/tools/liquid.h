@@ -5,7 +5,7 @@
 
 namespace dmf::tools {
 
-/// How to measure the default liquid. Single-threaded; reduced units throughout.
+/// How to measure a liquid, the default one if nothing is said. Single-threaded; reduced units throughout.
 struct LiquidRun {
   std::uint64_t seed = 1;
   double time_step = 0.01;  ///< tau
@@ -14,6 +14,7 @@ struct LiquidRun {
   engine::Integrator integrator = engine::Integrator::groot_warren;
   double list_skin = 0.25;  ///< r_c
   double measure = 0;       ///< tau of measuring; 0: as long as `quick` says
+  engine::LiquidParameters liquid{};
 };
 
 struct FilmResult {
@@ -42,9 +43,11 @@ struct BulkResult {
   double temperature;  ///< mean, k_BT
   double pressure;     ///< k_BT / r_c^3
   double viscosity;    ///< m / (r_c tau)
+  double diffusivity;  ///< of a bead, r_c^2 / tau
 };
-/// Bulk liquid at its own density. Viscosity from how fast transverse momentum waves of the equilibrium
-/// decay, C(t) = exp(-mu k^2 t / rho) (Palmer 1994), between 0.8 and 0.3 of their start.
+/// Bulk liquid at its bulk_density. Viscosity from how fast transverse momentum waves of the equilibrium
+/// decay, C(t) = exp(-mu k^2 t / rho) (Palmer 1994), between 0.8 and 0.3 of their start. Diffusivity from the
+/// mean squared displacement between a quarter and the whole of the time (Einstein).
 BulkResult run_bulk(const LiquidRun& how);
 
 }  // namespace dmf::tools

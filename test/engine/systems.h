@@ -172,6 +172,28 @@ inline std::vector<System> all_systems() {
       return true;
     });
   }
+  {
+    System& s = begin("plain DPD with a friction that reaches farther", periodic_box(7));
+    s.parameters.liquid.attraction = 25;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.liquid.dissipation_exponent = 0.5;
+    s.parameters.liquid.dissipation_radius = 1.4;
+    scatter_beads(s, 4, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+  }
+  {
+    System& s = begin("linear weight of friction around a microparticle on the wall", plate(14, 12));
+    s.parameters.liquid.dissipation_exponent = 1;
+    s.microparticles = {sphere_at({6, 7})};
+    scatter_beads(s, 6, {2, 2, 0}, {12, 12, 8}, [](const Vector3d& p) {
+      return (p - Vector3d(7, 7, 2)).norm() < 3 && (p - Vector3d(6, 7, 1)).norm() > 1.3;
+    });
+  }
+  {
+    System& s = begin("steep weight of a friction of short range on a wall", plate(9, 10));
+    s.parameters.liquid.dissipation_exponent = 3.5;
+    s.parameters.liquid.dissipation_radius = 0.8;
+    scatter_beads(s, 6, {0, 0, 0}, {9, 9, 1.2}, everywhere);
+  }
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));
   return systems;
@@ -191,7 +213,7 @@ inline void poison_behind(Beads& beads, BodyBeads& body_beads) {
 /// A wall with a gradient, so that every wall bead is its own.
 inline Plates wall_of(const System& system) {
   Plates wall(system.parameters.domain, system.parameters.wall,
-              system.parameters.liquid.cutoff_radius + system.parameters.list_skin);
+              system.parameters.liquid.range() + system.parameters.list_skin);
   const double width = system.parameters.domain.size().x();
   wall.set_wettability([width](double x, double) { return 150 - 110 * std::clamp(x / width, 0.0, 1.0); },
                        system.curve);

@@ -93,14 +93,21 @@ void add_forces(const Domain& domain, const MdpdLaw<double>& law, const End& i,
     if (&i == &j) continue;
     const Vector3d d = apart(domain, i.at, j.at);
     const double r = d.norm();
-    if (r >= 1) continue;
+    if (r >= law.range()) continue;
     const double attraction = attraction_of(j), density_sum = i.density + j.density;
     const double approach = (i.velocity - j.velocity).dot(d) / r;
-    const double zeta = HWY_NAMESPACE::pair_noise<double>(i.key, j.key), weight = 1 - r;
-    exact.force[k] += HWY_NAMESPACE::mdpd_force(law, attraction, r, density_sum, approach, zeta) / r * d;
-    exact.conservative[k] += HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) / r * d;
-    exact.random[k] += law.random_amplitude * weight * zeta / r * d;
-    exact.friction[k] -= law.friction * weight * weight * approach / r * d;
+    const double zeta = HWY_NAMESPACE::pair_noise<double>(i.key, j.key);
+    // w_R = (1 - r/r_D)^(s/2)
+    const double weight =
+        std::pow(std::max(0.0, 1 - r * law.inverse_dissipation_radius), law.twice_dissipation_exponent / 4.0);
+    const double conservative =
+        r < 1 ? HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) : 0.0;
+    const double random = law.random_amplitude * weight * zeta;
+    const double friction = -law.friction * weight * weight * approach;
+    exact.force[k] += (conservative + random + friction) / r * d;
+    exact.conservative[k] += conservative / r * d;
+    exact.random[k] += random / r * d;
+    exact.friction[k] += friction / r * d;
     exact.scale[k] += std::abs(attraction) + law.repulsion * density_sum +
                       std::abs(law.random_amplitude * zeta) + law.friction * std::abs(approach);
   }

@@ -63,7 +63,7 @@ TEST(Pairs, InRangeAreFoundOnceAndNoOthersUntilABeadMovedHalfTheSkin) {
       SCOPED_TRACE(kernel + ", " + system.name);
       const IdPairs found = found_in_range(system, kernel);
       // Rounding decides about pairs within 1e-5 of the range.
-      const double cutoff = system.parameters.liquid.cutoff_radius;
+      const double cutoff = system.parameters.liquid.range();
       const IdPairs must = all_within(system, cutoff - 1e-5), may = all_within(system, cutoff + 1e-5);
       for (const auto& pair : must) EXPECT_EQ(found.count(pair), 1u);
       for (const auto& pair : found) EXPECT_EQ(may.count(pair), 1u);
@@ -77,7 +77,7 @@ TEST(Pairs, RunsHoldEveryWallBeadThatMayComeIntoRange) {
     const Plates wall = wall_of(system);
     Pairs pairs(system.parameters);
     pairs.rebuild(system.beads, wall);
-    const double reach = system.parameters.liquid.cutoff_radius + 0.5 * system.parameters.list_skin;
+    const double reach = system.parameters.liquid.range() + 0.5 * system.parameters.list_skin;
     for (const NeighbourBlock& block : pairs.blocks())
       for (const NeighbourCell& cell : block.cells) {
         std::map<std::uint32_t, std::set<std::uint32_t>> images_of_wall_bead;

@@ -120,6 +120,9 @@ std::vector<std::string> violations(const MicroparticlePlacement& placement, con
   if (check.any()) return check.found();  // what follows computes with these numbers
   check.unless(!placement.smooth || (placement.beads == 0 && placement.points.empty()),
                "smooth: true, allowed: neither beads nor points beside it");
+  check.unless(!placement.smooth ||
+                   liquid_law(parameters.liquid, parameters.time_step).weight() == DissipativeWeight::shared,
+               "smooth: true, allowed: in a liquid of dissipation_exponent 2 and dissipation_radius 1");
   if (placement.points.empty() && !placement.smooth) check_shell(placement, check);
   check_contact(placement, parameters, check);
   check.unless(parameters.integrator == Integrator::groot_warren,

@@ -42,7 +42,9 @@ HWY_INLINE MdpdLaw<Lanes> in_lanes(const MdpdLaw<double>& law) {
           lanes(law.inverse_cutoff_radius),
           lanes(law.inverse_repulsion_radius),
           lanes(law.friction),
-          lanes(law.random_amplitude)};
+          lanes(law.random_amplitude),
+          lanes(law.inverse_dissipation_radius),
+          law.twice_dissipation_exponent};
 }
 
 // ---- density ----
@@ -225,7 +227,7 @@ struct WallUnderBody {
 
 using ForceSum = LaneSums<3>;
 
-template <PairForce part, bool across_periodic, class Others>
+template <PairForce part, DissipativeWeight weight, bool across_periodic, class Others>
 HWY_INLINE void add_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
                            const Others& others, std::size_t count, ForceSum& total) {
   for (std::size_t k = 0; k < count; k += lane_count) {
@@ -237,7 +239,8 @@ HWY_INLINE void add_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, cons
                             d.z * (Lanes(i.moving.z) - j.vz)) *
                            inverse_r;
     const Lanes zeta = pair_noise<Lanes>(i.key, j.key);
-    const Lanes force = pair_force<part>(law, j.attraction, r, Lanes(i.moving.w) + j.density, approach, zeta);
+    const Lanes force =
+        pair_force<part, weight>(law, j.attraction, r, Lanes(i.moving.w) + j.density, approach, zeta);
     const Lanes over_r = zero_unless(first_lanes(count - k), force * inverse_r);
     total.add(k, over_r * d.x, over_r * d.y, over_r * d.z);
   }
@@ -268,7 +271,7 @@ HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32
   store_lanes(UnsignedLanes(0), bead_in_slot);
 }
 
-template <PairForce part, bool across_periodic>
+template <PairForce part, DissipativeWeight weight, bool across_periodic>
 HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
                               const Packed& packed) {
   const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
@@ -285,12 +288,13 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
                                 packed.bead_in_slot};
-    add_forces<part, across_periodic>(pass, law, i, Liquid<SlotsOfBeads>{pass, in_range, law.attraction},
-                                      block.in_range_count(bead), total);
+    add_forces<part, weight, across_periodic>(pass, law, i,
+                                              Liquid<SlotsOfBeads>{pass, in_range, law.attraction},
+                                              block.in_range_count(bead), total);
     if (wall_candidates > 0) {
       const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
-      add_forces<part, across_periodic>(pass, wall_law, i, WallBeads{pass, packed.foreign_in_range}, count,
-                                        total);
+      add_forces<part, weight, across_periodic>(pass, wall_law, i, WallBeads{pass, packed.foreign_in_range},
+                                                count, total);
     }
     pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
   }
@@ -303,7 +307,7 @@ HWY_INLINE void add_to(Record& force, const ForceSum& total) {
 }
 
 /// Adds what the microparticles near a cell do to its liquid.
-template <PairForce part>
+template <PairForce part, DissipativeWeight weight>
 HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
                                 const Packed& packed) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
@@ -315,24 +319,26 @@ HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& bloc
     ForceSum total;
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-    add_forces<part, true>(pass, in_lanes(law), i, BodyBeads{pass, packed.foreign_in_range}, count, total);
+    add_forces<part, weight, true>(pass, in_lanes(law), i, BodyBeads{pass, packed.foreign_in_range}, count,
+                                   total);
     add_to(pass.force[bead], total);
   }
 }
 
-template <PairForce part>
+template <PairForce part, DissipativeWeight weight>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const Packed packed = Workbench::of_this_thread().room_for(block);
   for (const NeighbourCell& cell : block.cells) {
     if (cell.across_periodic)
-      force_on_cell<part, true>(pass, block, cell, packed);
+      force_on_cell<part, weight, true>(pass, block, cell, packed);
     else
-      force_on_cell<part, false>(pass, block, cell, packed);
-    if (cell.first_body_run < cell.end_body_run) add_body_forces<part>(pass, block, cell, packed);
+      force_on_cell<part, weight, false>(pass, block, cell, packed);
+    if (cell.first_body_run < cell.end_body_run) add_body_forces<part, weight>(pass, block, cell, packed);
   }
 }
 
 /// What liquid and wall do to the beads of microparticles, each by itself.
+template <DissipativeWeight weight>
 void body_force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
@@ -350,7 +356,7 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
       ForceSum total;
       const Receiver i = receiver(bead);
       const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-      add_forces<PairForce::all, true>(
+      add_forces<PairForce::all, weight, true>(
           pass, in_lanes(law), i, Liquid<BeadIndices>{pass, {packed.foreign_in_range}, Lanes(i.position.w)},
           count, total);
       pass.bodies.liquid_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
@@ -364,18 +370,24 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
       const std::size_t count = find_foreign(packed, candidates, i.position, wall_ranges);
       const WallUnderBody wall{{pass, packed.foreign_in_range},
                                Lanes(static_cast<float>(wall_law.attraction))};
-      add_forces<PairForce::conservative, true>(pass, in_lanes(wall_law), i, wall, count, total);
+      add_forces<PairForce::conservative, weight, true>(pass, in_lanes(wall_law), i, wall, count, total);
       pass.bodies.wall_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
     }
   }
 }
 
-Kernels table() {
+template <DissipativeWeight weight>
+Kernels table_for() {
   return {&density,
-          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
-           &force<PairForce::friction>},
+          {&force<PairForce::all, weight>, &force<PairForce::conservative, weight>,
+           &force<PairForce::random, weight>, &force<PairForce::friction, weight>},
           &body_density,
-          &body_force};
+          &body_force<weight>};
+}
+
+Kernels table(DissipativeWeight weight) {
+  return weight == DissipativeWeight::shared ? table_for<DissipativeWeight::shared>()
+                                             : table_for<DissipativeWeight::power>();
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE
@@ -402,13 +414,13 @@ std::vector<std::string> vector_kernels() {
   return names;
 }
 
-Kernels select_kernels(const std::string& name) {
+Kernels select_kernels(const std::string& name, DissipativeWeight weight) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     if (name != "auto" && name != kernel_name(target)) continue;
     // Highway dispatches on a process-wide choice; make it only for this look-up.
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    const Kernels kernels = HWY_DYNAMIC_DISPATCH(table)();
+    const Kernels kernels = HWY_DYNAMIC_DISPATCH(table)(weight);
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     return kernels;

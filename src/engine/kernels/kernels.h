@@ -48,7 +48,7 @@ struct Kernels {
 
 /// Names that this processor can run, best first.
 std::vector<std::string> vector_kernels();
-/// The best, or the one named. @throws InvalidInput naming those there are.
-Kernels select_kernels(const std::string& name);
+/// The best, or the one named, for laws of that weight. @throws InvalidInput naming those there are.
+Kernels select_kernels(const std::string& name, DissipativeWeight weight);
 
 }  // namespace dmf::engine

@@ -79,6 +79,7 @@ HWY_INLINE double from_signed_bits<double, std::uint32_t>(std::uint32_t bits) {
   return static_cast<double>(static_cast<std::int32_t>(bits));
 }
 HWY_INLINE double maximum(double a, double b) { return std::max(a, b); }
+HWY_INLINE double square_root(double a) { return std::sqrt(a); }
 
 /// `number` sums at once over terms k = 0, 1, 2, ..., added a register at a time. Whatever the width of a
 /// register, term k goes to partial sum k mod 16 and the partial sums are added in one order: every

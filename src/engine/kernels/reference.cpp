@@ -64,7 +64,7 @@ void density(const PairPass& pass, NeighbourBlock& block) {
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const BeadRun *run = block.runs.data() + cell.first_run, *end = block.runs.data() + cell.end_run;
-      for_each_in_range(pass, pass.position, run, end, pass.position[bead], 1.0 / law.inverse_cutoff_radius,
+      for_each_in_range(pass, pass.position, run, end, pass.position[bead], law.range(),
                         [&](std::uint32_t, std::uint32_t slot, const Vector3d&) {
                           block.in_range.push_back(static_cast<std::uint16_t>(slot));
                         });
@@ -102,50 +102,51 @@ End body_end(const PairPass& pass, std::uint32_t i) {
 }
 End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
 
-template <PairForce part>
+template <PairForce part, DissipativeWeight weight>
 Vector3d force_between(const MdpdLaw<double>& law, double attraction, const Vector3d& d, const End& i,
                        const End& j) {
   const double r = std::max(d.norm(), 1e-6);
   const double approach = d.dot(i.velocity - j.velocity) / r;
   const double zeta = pair_noise<double>(i.key, j.key);
-  return pair_force<part>(law, attraction, r, i.density + j.density, approach, zeta) / r * d;
+  return pair_force<part, weight>(law, attraction, r, i.density + j.density, approach, zeta) / r * d;
 }
 
 Record record_of(const Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-template <PairForce part>
+template <PairForce part, DissipativeWeight weight>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
   const MdpdLaw<double>& body_law = pass.laws(Species::liquid, Species::microparticle);
   std::vector<Vector3d> total(block.end - block.begin, Vector3d::Zero());
   for_each_pair_in_range(block, [&](std::uint32_t bead, std::uint32_t other) {
-    total[bead - block.begin] +=
-        force_between<part>(law, law.attraction, separation(pass, pass.position[bead], pass.position[other]),
-                            liquid_end(pass, bead), liquid_end(pass, other));
+    total[bead - block.begin] += force_between<part, weight>(
+        law, law.attraction, separation(pass, pass.position[bead], pass.position[other]),
+        liquid_end(pass, bead), liquid_end(pass, other));
   });
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record& at = pass.position[bead];
       Vector3d& sum = total[bead - block.begin];
       for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
-                        block.wall_runs.data() + cell.end_wall_run, at, 1.0 / wall_law.inverse_cutoff_radius,
+                        block.wall_runs.data() + cell.end_wall_run, at, wall_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          sum += force_between<part>(wall_law, pass.wall[other].w, d, liquid_end(pass, bead),
-                                                     wall_end(other));
+                          sum += force_between<part, weight>(wall_law, pass.wall[other].w, d,
+                                                             liquid_end(pass, bead), wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
-                        block.body_runs.data() + cell.end_body_run, at, 1.0 / body_law.inverse_cutoff_radius,
+                        block.body_runs.data() + cell.end_body_run, at, body_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          sum += force_between<part>(body_law, pass.bodies.position[other].w, d,
-                                                     liquid_end(pass, bead), body_end(pass, other));
+                          sum += force_between<part, weight>(body_law, pass.bodies.position[other].w, d,
+                                                             liquid_end(pass, bead), body_end(pass, other));
                         });
       pass.force[bead] = record_of(sum);
     }
 }
 
+template <DissipativeWeight weight>
 void body_force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
@@ -153,16 +154,16 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record& at = pass.bodies.position[bead];
       Vector3d of_liquid = Vector3d::Zero(), of_wall = Vector3d::Zero();
-      for_each_in_range(
-          pass, pass.position, block.runs.data() + cell.first_run, block.runs.data() + cell.end_run, at,
-          1.0 / law.inverse_cutoff_radius, [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-            of_liquid +=
-                force_between<PairForce::all>(law, at.w, d, body_end(pass, bead), liquid_end(pass, other));
-          });
-      for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
-                        block.wall_runs.data() + cell.end_wall_run, at, 1.0 / wall_law.inverse_cutoff_radius,
+      for_each_in_range(pass, pass.position, block.runs.data() + cell.first_run,
+                        block.runs.data() + cell.end_run, at, law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          of_wall += force_between<PairForce::conservative>(
+                          of_liquid += force_between<PairForce::all, weight>(
+                              law, at.w, d, body_end(pass, bead), liquid_end(pass, other));
+                        });
+      for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
+                        block.wall_runs.data() + cell.end_wall_run, at, wall_law.range(),
+                        [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+                          of_wall += force_between<PairForce::conservative, weight>(
                               wall_law, wall_law.attraction, d, body_end(pass, bead), wall_end(other));
                         });
       pass.bodies.liquid_force[bead] = record_of(of_liquid);
@@ -170,14 +171,20 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
     }
 }
 
+template <DissipativeWeight weight>
+Kernels kernels() {
+  return {&density,
+          {&force<PairForce::all, weight>, &force<PairForce::conservative, weight>,
+           &force<PairForce::random, weight>, &force<PairForce::friction, weight>},
+          &body_density,
+          &body_force<weight>};
+}
+
 }  // namespace
 
-Kernels reference_kernels() {
-  return {&density,
-          {&force<PairForce::all>, &force<PairForce::conservative>, &force<PairForce::random>,
-           &force<PairForce::friction>},
-          &body_density,
-          &body_force};
+Kernels reference_kernels(DissipativeWeight weight) {
+  return weight == DissipativeWeight::shared ? kernels<DissipativeWeight::shared>()
+                                             : kernels<DissipativeWeight::power>();
 }
 
 }  // namespace dmf::engine

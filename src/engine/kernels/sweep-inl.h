@@ -119,7 +119,7 @@ HWY_INLINE std::size_t sweep(const Packed& packed, std::size_t packed_count, con
 HWY_INLINE Ranges ranges_of(const MdpdLaw<double>& law) {
   const auto squared = [](double inverse)
                            HWY_ATTR { return Lanes(static_cast<float>(1.0 / (inverse * inverse))); };
-  return {squared(law.inverse_cutoff_radius), squared(law.inverse_repulsion_radius)};
+  return {squared(1.0 / law.range()), squared(law.inverse_repulsion_radius)};
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE

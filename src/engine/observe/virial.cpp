@@ -24,7 +24,8 @@ Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
         }
       const double r = std::max(d.norm(), 1e-6);
       const double density_sum = double(beads.predicted[i].w) + beads.predicted[j].w;
-      const double force = HWY_NAMESPACE::mdpd_force(law, law.attraction, r, density_sum, 0.0, 0.0);
+      const double force = HWY_NAMESPACE::weighted_force<PairForce::conservative>(law, law.attraction, r,
+                                                                                  density_sum, 0.0, 0.0);
       of_bead[i] += 0.5 * force / r * d * d.transpose();
     });
   for (std::size_t i = 0; i < beads.size(); ++i) {
