@@ -40,6 +40,7 @@ class CheckpointSeries {
   std::uint64_t next_number() const;
   std::string name_of(std::uint64_t number) const;
   const CheckpointFolder& folder() const { return folder_; }
+  const std::string& prefix() const { return prefix_; }
 
  private:
   class Lock;

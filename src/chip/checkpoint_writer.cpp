@@ -26,6 +26,11 @@ bool CheckpointWriter::put(Checkpoint checkpoint) {
   return true;
 }
 
+bool CheckpointWriter::busy() {
+  const std::lock_guard lock(mutex_);
+  return next_ || writing_;
+}
+
 void CheckpointWriter::wait() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !next_ && !writing_; });

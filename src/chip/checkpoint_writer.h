@@ -30,6 +30,8 @@ class CheckpointWriter {
 
   /// Hands a checkpoint over. False, and nothing is done, while the last one is still being written.
   bool put(Checkpoint checkpoint);
+  /// A checkpoint is being written: the next would not be taken.
+  bool busy();
   /// Until nothing is being written.
   void wait();
   /// What became of those that were put in since the last call, in order.

@@ -8,10 +8,9 @@
 namespace dmf::chip {
 
 /// Hash of each part of a scene that decides how its run goes: "liquid", "chip", "droplets", ... Equal
-/// hashes: a saved run of the one goes on in the other. Comments, description, duration, the limit of beads
-/// and the seed (which a run may replace and saves itself) are in none, and neither is how a number is
-/// written: "20 um" is 2 at an r_c of 10 um. Calibrations count by their points, board files by the
-/// electrodes they give.
+/// hashes: a saved run of the one goes on in the other. Comments, order and description of the file, its
+/// duration, the limit of beads and the seed (which a run may replace, and saves itself) are in none. Numbers
+/// count by their bits, calibrations by their points, board files by the electrodes they give.
 using SceneContent = std::map<std::string, std::uint64_t>;
 
 SceneContent content_of(const Scene& scene);
