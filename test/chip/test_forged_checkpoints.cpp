@@ -75,7 +75,7 @@ class ForgedCheckpoints : public ::testing::Test {
   /// the test, and so does what a sanitizer finds.
   Outcome use(const std::string& bytes) {
     std::ofstream(root_ / "forged", std::ios::binary | std::ios::trunc) << bytes;
-    Experiment chip(scene_, {1, "auto"});
+    Experiment& chip = chip_;
     try {
       chip.load(CheckpointFolder(root_).read("forged").state);
     } catch (const engine::InvalidInput&) {
@@ -137,6 +137,7 @@ class ForgedCheckpoints : public ::testing::Test {
   }
 
   const Scene scene_ = parse_scene(kScene, "scene.yaml");
+  Experiment chip_{scene_, {1, "auto"}};
   fs::path root_;
   std::string good_;
   std::size_t header_, run_, engine_, end_;  ///< where the parts of the file begin, and the checksum
