@@ -90,6 +90,7 @@ void EngineThread::loop() {
   rate_.restart(Clock::now(), experiment_->steps());
   last_checkpoint_ = Clock::now();
   next_checkpoint_ = last_checkpoint_ + seconds(settings_.checkpoint_period);
+  saved_progress_ = progress();  // the scene's start, or a checkpoint: there already
   collect_commands();
   if (!settings_.resumed_from.empty()) note("checkpoint_loaded", settings_.resumed_from);
   while (run_requests()) {

@@ -186,7 +186,7 @@ class EngineThread {
   Progress progress() const;
   chip::CheckpointWriter* writer_;
   Clock::time_point next_checkpoint_, last_checkpoint_;
-  std::optional<Progress> saved_progress_;  ///< of the last one that was handed to the writer
+  std::optional<Progress> saved_progress_;  ///< when the last one was handed to the writer, or at the start
   CheckpointStatus checkpoints_;
 
   // Shared.

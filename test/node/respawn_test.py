@@ -217,7 +217,7 @@ class RespawnTest(unittest.TestCase):
             os.unlink(where)
 
         self.fails_and_recovers(full, free)
-        self.assertEqual(len(glob.glob(where + "/inside/auto.chip.tiny_line.*")), 1)
+        self.assertTrue(glob.glob(where + "/inside/auto.chip.tiny_line.*"))
 
     def test_a_full_disk_stops_checkpoints_not_the_run(self):
         # A small file system that only the chip has; from here it is seen through the chip's process.
@@ -243,7 +243,7 @@ class RespawnTest(unittest.TestCase):
 
         try:
             self.fails_and_recovers(full, free)
-            self.assertEqual(len(glob.glob(inside + "/auto.chip.tiny_line.*")), 1)
+            self.assertTrue(glob.glob(inside + "/auto.chip.tiny_line.*"))
         finally:
             rospy.delete_param("/chip")
 
