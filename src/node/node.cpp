@@ -1,6 +1,5 @@
 #include "node/node.h"
 
-#include <ros/console.h>
 #include <ros/this_node.h>
 
 #include <utility>
@@ -27,7 +26,7 @@ Node::~Node() {
   spinner_.stop();
   publisher_.stop();
   const std::string saved = engine_.write_last_checkpoint();
-  if (!saved.empty()) ROS_INFO("%s", saved.c_str());
+  if (!saved.empty()) tell(saved);
 }
 
 }  // namespace dmf::node

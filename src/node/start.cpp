@@ -1,11 +1,11 @@
 #include "node/start.h"
 
 #include <fmt/format.h>
-#include <ros/console.h>
 #include <ros/param.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 
 namespace dmf::node {
@@ -27,7 +27,7 @@ bool resume(Start& start, const Options& options, chip::CheckpointSeries& series
   const chip::ResumeRule rule{options.resume == "true" ? 0 : static_cast<std::uint64_t>(options.respawn_from),
                               start.experiment->simulation().parameters().seed};
   const auto point = chip::resume(*start.experiment, series, rule,
-                                  [](const std::string& why) { ROS_WARN("checkpoint %s", why.c_str()); });
+                                  [](const std::string& why) { tell("checkpoint " + why); });
   if (!point) return false;
   const chip::Checkpoint& saved = point->checkpoint;
   EngineSettings& settings = start.settings;
@@ -40,6 +40,8 @@ bool resume(Start& start, const Options& options, chip::CheckpointSeries& series
 }
 
 }  // namespace
+
+void tell(const std::string& text) { std::fprintf(stderr, "chip: %s\n", text.c_str()); }
 
 bool is_automatic(const std::string& checkpoint) { return checkpoint.rfind(kAutomatic, 0) == 0; }
 
@@ -65,11 +67,11 @@ Start begin(const Options& options, const chip::Scene& scene, chip::CheckpointSe
   const bool respawned = options.respawn_from >= 0;
   if (options.resume == "true" || respawned) {
     if (resume(start, options, series, respawned)) {
-      ROS_INFO("goes on from %s", start.settings.resumed_from.c_str());
+      tell("goes on from " + start.settings.resumed_from);
     } else {
-      ROS_WARN(
-          "no automatic checkpoint %s* of this scene and seed in %s to go on from: starts from the scene",
-          series.prefix().c_str(), options.checkpoint_dir.c_str());
+      tell(fmt::format(
+          "no automatic checkpoint {}* of this scene and seed in {} to go on from: starts from the scene",
+          series.prefix(), options.checkpoint_dir.string()));
     }
   }
   if (!respawned) {

@@ -18,6 +18,9 @@ bool is_automatic(const std::string& checkpoint);
 chip::CheckpointSeries automatic_checkpoints(const Options& options, const std::string& node,
                                              const chip::Scene& scene);
 
+/// On standard error, as everything that happens before and after topics are there.
+void tell(const std::string& text);
+
 /// How a node begins.
 struct Start {
   std::unique_ptr<chip::Experiment> experiment;

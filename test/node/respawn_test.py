@@ -55,8 +55,10 @@ class RespawnTest(unittest.TestCase):
 
     def launch(self, *arguments):
         """chip.launch as people start it."""
-        process = subprocess.Popen(["roslaunch", "dmf_sim", "chip.launch", f"scene:={SCENE}", "threads:=1",
-                                    "paused:=true", f"checkpoint_dir:={self.folder}", *arguments])
+        with open(os.path.join(self.folder, "told.log"), "a", encoding="utf-8") as told:
+            process = subprocess.Popen(["roslaunch", "dmf_sim", "chip.launch", f"scene:={SCENE}", "threads:=1",
+                                        "paused:=true", f"checkpoint_dir:={self.folder}", *arguments],
+                                       stdout=told, stderr=told)
         self.started.append(process)
         return process
 
@@ -84,11 +86,10 @@ class RespawnTest(unittest.TestCase):
     def automatic(self):
         return sorted(glob.glob(os.path.join(self.folder, "auto.chip.tiny_line.*")))
 
-    def wait_for_automatic(self, count):
-        until = time.monotonic() + 20
-        while len(self.automatic()) < count:
-            self.assertLess(time.monotonic(), until, f"only {self.automatic()}")
-            time.sleep(0.02)
+    def told(self):
+        """What the launches of this test printed."""
+        with open(os.path.join(self.folder, "told.log"), encoding="utf-8") as told:
+            return told.read()
 
     def test_a_killed_chip_comes_back_where_it_was(self):
         clock, events = Listener("/clock", Clock), Listener("/chip/events", Event)
@@ -166,13 +167,18 @@ class RespawnTest(unittest.TestCase):
         self.assertEqual(Chip().hash(), later)
         self.end(launch)
         # What is damaged is passed over; another seed is another run.
-        for path in self.automatic()[1:]:
+        damaged = self.automatic()[1:]
+        for path in damaged:
             os.truncate(path, 1000)
         launch = self.launch("resume:=true")
         self.assertEqual((self.chip()[0].get_state(False).state.step, Chip().hash()), (70, saved))
+        for path in damaged:
+            self.assertIn(f"{os.path.basename(path)}: passed over: ", self.told())
         self.end(launch)
+        self.assertNotIn("starts from the scene", self.told())
         launch = self.launch("resume:=true", "seed:=8")
         self.assertEqual(self.chip()[0].get_state(False).state.step, 0)
+        self.assertIn("starts from the scene", self.told())
 
     def test_a_name_of_the_automatic_ones_is_refused(self):
         self.launch()
