@@ -11,11 +11,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
-#include "engine/parameters.h"
+#include "chip/experiment.h"
+#include "engine/saved_state.h"
 
 namespace dmf::chip {
 
@@ -24,8 +26,12 @@ namespace {
 using engine::InvalidInput;
 
 constexpr const char* kMagic = "dmf_sim checkpoint ";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
+constexpr const char* kTemporary = ".unfinished";
 constexpr std::size_t kMaxNameLength = 100;
+constexpr std::size_t kMaxHeaderLength = 1 << 16;
+/// ros::Time has 32 bits for seconds, ns.
+constexpr std::uint64_t kMaxRosTime = 4'000'000'000'000'000'000;
 constexpr std::size_t kTrailerLength = sizeof("crc64 0123456789abcdef\n") - 1;
 
 /// A file descriptor that closes itself.
@@ -109,11 +115,16 @@ std::string read_all(int descriptor, std::size_t size, const std::string& file) 
 }
 
 std::string encode(const Checkpoint& checkpoint) {
-  const nlohmann::json header = {{"scene", checkpoint.scene},
+  const nlohmann::json header = {{"package_version", DMF_VERSION},
+                                 {"scene", checkpoint.scene},
+                                 {"scene_hash", checkpoint.scene_hash},
                                  {"seed", checkpoint.seed},
                                  {"step", checkpoint.step},
                                  {"time", checkpoint.time},
                                  {"state_hash", checkpoint.state_hash},
+                                 {"ros_time", checkpoint.ros_time},
+                                 {"run", checkpoint.run},
+                                 {"paused", checkpoint.paused},
                                  {"state_bytes", checkpoint.state.size()}};
   std::string data = fmt::format("{}{}\n{}\n", kMagic, kVersion, header.dump());
   data += checkpoint.state;
@@ -129,7 +140,7 @@ Checkpoint decode(const std::string& data, const std::string& name) {
   const std::size_t magic_end = data.find('\n');
   const std::size_t header_end =
       magic_end == std::string::npos ? std::string::npos : data.find('\n', magic_end + 1);
-  if (header_end == std::string::npos) refuse("the file is cut off");
+  if (header_end == std::string::npos || header_end > kMaxHeaderLength) refuse("the file is cut off");
   const std::string version = data.substr(std::strlen(kMagic), magic_end - std::strlen(kMagic));
   if (version != std::to_string(kVersion)) {
     refuse(fmt::format("version {}, allowed: {}", version, kVersion));
@@ -143,19 +154,35 @@ Checkpoint decode(const std::string& data, const std::string& name) {
   try {
     const auto header = nlohmann::json::parse(data.begin() + static_cast<std::ptrdiff_t>(magic_end) + 1,
                                               data.begin() + static_cast<std::ptrdiff_t>(header_end));
+    const auto number = [&](const char* key, std::uint64_t most) {
+      const nlohmann::json& value = header.at(key);
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+        refuse(fmt::format("bad header: {}: {}, allowed: 0 to {}", key, value.dump(), most));
+      return value.get<std::uint64_t>();
+    };
+    constexpr std::uint64_t kAny = ~std::uint64_t{0};
+    checkpoint.package_version = header.at("package_version").get<std::string>();
     checkpoint.scene = header.at("scene").get<std::string>();
-    checkpoint.seed = header.at("seed").get<std::uint64_t>();
-    checkpoint.step = header.at("step").get<std::uint64_t>();
+    checkpoint.scene_hash = number("scene_hash", kAny);
+    checkpoint.seed = number("seed", kAny);
+    checkpoint.step = number("step", engine::most_steps);
     checkpoint.time = header.at("time").get<double>();
-    checkpoint.state_hash = header.at("state_hash").get<std::uint64_t>();
-    checkpoint.state = data.substr(header_end + 1, body - header_end - 1);
-    if (header.at("state_bytes").get<std::size_t>() != checkpoint.state.size()) {
+    checkpoint.state_hash = number("state_hash", kAny);
+    checkpoint.ros_time = number("ros_time", kMaxRosTime);
+    checkpoint.run = static_cast<std::uint32_t>(number("run", std::numeric_limits<std::uint32_t>::max() - 1));
+    checkpoint.paused = header.at("paused").get<bool>();
+    if (number("state_bytes", kAny) != body - header_end - 1)
       refuse("the state has not the size that its header says");
-    }
+    checkpoint.state = data.substr(header_end + 1, body - header_end - 1);
   } catch (const nlohmann::json::exception& error) {
     refuse(fmt::format("bad header: {}", error.what()));
   }
   return checkpoint;
+}
+
+bool is_temporary(const std::string& name) {
+  const std::size_t end = std::strlen(kTemporary);
+  return name.size() > end && name.compare(name.size() - end, end, kTemporary) == 0;
 }
 
 /// What lies at `name` in an open folder: nothing, a regular file, or something that must not be touched.
@@ -167,6 +194,19 @@ Entry entry(const File& folder, const std::string& name) {
 }
 
 }  // namespace
+
+Checkpoint checkpoint_of(const Experiment& experiment) {
+  const auto snapshot = experiment.observe({false, true});
+  Checkpoint checkpoint;
+  checkpoint.scene = experiment.scene().name;
+  checkpoint.scene_hash = experiment.scene_hash();
+  checkpoint.seed = experiment.simulation().parameters().seed;
+  checkpoint.step = snapshot->step;
+  checkpoint.time = snapshot->time;
+  checkpoint.state_hash = snapshot->state_hash.value();
+  checkpoint.state = experiment.save();
+  return checkpoint;
+}
 
 void CheckpointFolder::write(const std::string& name, const Checkpoint& checkpoint) const {
   check_name(name);
@@ -184,7 +224,7 @@ void CheckpointFolder::write(const std::string& name, const Checkpoint& checkpoi
 
   // Names of temporaries start with a dot, which no checkpoint's does, and are used once.
   static std::atomic<unsigned> count{0};
-  const std::string temporary = fmt::format(".{}.{}.{}", name, ::getpid(), count++);
+  const std::string temporary = fmt::format(".{}.{}.{}{}", name, ::getpid(), count++, kTemporary);
   const std::string shown = (folder_ / name).string();
   try {
     const File file(::openat(folder.get(), temporary.c_str(),
@@ -229,6 +269,22 @@ std::vector<std::string> CheckpointFolder::names() const {
   }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+void CheckpointFolder::remove(const std::string& name) const {
+  check_name(name);
+  const File folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.valid() && entry(folder, name) == Entry::file) ::unlinkat(folder.get(), name.c_str(), 0);
+}
+
+void CheckpointFolder::remove_leftovers(const std::string& prefix) const {
+  std::vector<std::filesystem::path> found;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder_, error)) {
+    const std::string name = file.path().filename().string();
+    if (name.rfind("." + prefix, 0) == 0 && is_temporary(name)) found.push_back(file.path());
+  }
+  for (const auto& file : found) ::unlink(file.c_str());
 }
 
 }  // namespace dmf::chip

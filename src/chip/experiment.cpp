@@ -68,12 +68,19 @@ void Experiment::State::note(BoardEvent::Kind kind, const std::string& message) 
 
 // One line of JSON for what the chip knows, then the engine's bytes.
 
-std::string Experiment::State::save() const {
+const SceneContent& Experiment::State::scene_content() {
+  if (!content) content = content_of(*scene);
+  return *content;
+}
+
+std::string Experiment::State::save() {
   Json saved;
   saved["scene"] = scene->name;
+  for (const auto& [part, hash] : scene_content()) saved["content"][part] = hash;
   saved["seed"] = parameters.seed;
   saved.update(run->save());
-  return saved.dump() + "\n" + run->simulation->save_state();
+  std::string bytes = run->simulation->save_state();
+  return bytes.insert(0, saved.dump() + "\n");
 }
 
 void Experiment::State::load(const std::string& bytes) {
@@ -84,6 +91,11 @@ void Experiment::State::load(const std::string& bytes) {
     const auto name = saved.at("scene").get<std::string>();
     if (name != scene->name) {
       throw engine::InvalidInput(fmt::format("saved run: of scene {}, allowed: {}", name, scene->name));
+    }
+    if (const auto content = saved.at("content").get<SceneContent>(); content != scene_content()) {
+      throw engine::InvalidInput(
+          fmt::format("saved run: of a scene {} that differs in {}, allowed: one of the scene as it is now",
+                      name, differing_parts(content, scene_content())));
     }
     engine::Parameters saved_parameters = parameters;
     saved_parameters.seed = saved.at("seed").get<std::uint64_t>();
@@ -212,6 +224,7 @@ double Experiment::commanded_angle(double x, double y) const {
 }
 
 std::string Experiment::save() const { return state_->save(); }
+std::uint64_t Experiment::scene_hash() const { return hash_of(state_->scene_content()); }
 void Experiment::load(const std::string& bytes) { state_->load(bytes); }
 const Scene& Experiment::scene() const { return *state_->scene; }
 const engine::Simulation& Experiment::simulation() const { return *state_->run->simulation; }

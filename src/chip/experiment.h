@@ -86,8 +86,11 @@ class Experiment {
   /// scene that loads it goes on with the same bits.
   std::string save() const;
   /// Takes over a saved run, its seed too. @throws engine::InvalidInput, unchanged, when the bytes are not a
-  /// run of this scene. Recovers from an instability.
+  /// run of this scene, by name and content (scene_hash.h), or not sound: no bytes, however they were forged,
+  /// make it crash or take more memory than a run of their length. Recovers from an instability.
   void load(const std::string& bytes);
+  /// Of what decides how runs of the scene go: saved runs belong to one.
+  std::uint64_t scene_hash() const;
 
   const Scene& scene() const;
   const engine::Simulation& simulation() const;

@@ -8,6 +8,7 @@
 
 #include "chip/experiment.h"
 #include "chip/run.h"
+#include "chip/scene_hash.h"
 
 namespace dmf::chip {
 
@@ -29,7 +30,9 @@ struct Experiment::State {
     run = std::move(fresh);
   }
 
-  std::string save() const;
+  /// What decides how runs of the scene go; worked out when it is first asked for.
+  const SceneContent& scene_content();
+  std::string save();
   void load(const std::string& bytes);
 
   Reply apply(const Command& command);
@@ -86,6 +89,7 @@ struct Experiment::State {
   engine::ContactAngleCurve curve;
   std::unique_ptr<Run> run;
   std::optional<PadCapacitance> pad_capacitance;  ///< once it was needed
+  std::optional<SceneContent> content;            ///< the same
   bool readings_wanted = false;
 };
 

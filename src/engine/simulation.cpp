@@ -19,6 +19,7 @@
 #include "engine/observe/wetted_area.h"
 #include "engine/pairs.h"
 #include "engine/placement.h"
+#include "engine/saved_state.h"
 #include "engine/thermostat.h"
 #include "engine/walls/plates.h"
 
@@ -73,6 +74,20 @@ struct Simulation::State {
   /// What a force from afar may do: what starts from rest in every step anew moves by a dt^2, at most 0.001
   /// r_c.
   double largest_acceleration() const { return 1e-3 / (parameters.time_step * parameters.time_step); }
+
+  void require_sound(const BodyForces& forces) const {
+    const double largest = largest_acceleration();
+    const auto check = [](const char* key, const Vector3d& value, double allowed, const char* unit) {
+      if (!value.allFinite() || value.norm() > allowed)
+        throw InvalidInput(fmt::format("{}: ({}, {}, {}), allowed: finite, a magnitude of up to {:.4g} ({})",
+                                       key, value.x(), value.y(), value.z(), allowed, unit));
+    };
+    check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
+    double lightest = std::numeric_limits<double>::infinity();
+    for (const Microparticle& particle : microparticles.all())
+      if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
+    check("body_forces.magnetic", forces.magnetic, largest * lightest, "k_BT / r_c");
+  }
 
   /// Stops the run for good. @throws Instability.
   [[noreturn]] void stop(const std::string& why) {
@@ -169,10 +184,14 @@ struct Simulation::State {
     // 1: beads in the order of neighbour lists. 2: no microparticles.
     constexpr std::uint64_t current = 3;
     std::uint64_t format = current;
+    // What a bead takes below, and a profile a droplet.
+    if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));
     archive(format);
     if (format != current)
       throw InvalidInput(fmt::format("saved state: format {}, allowed: {}", format, current));
     archive(step);
+    if (step > most_steps)
+      throw InvalidInput(fmt::format("saved state: step {}, allowed: up to {}", step, most_steps));
     archive(next_bead_id);
     for (AlignedVector<Record>* array :
          {&beads.position, &beads.predicted, &beads.velocity, &beads.force, &beads.listed})
@@ -186,6 +205,7 @@ struct Simulation::State {
     carriage.archive(archive);
     archive(far.gravity);
     archive(far.magnetic);
+    require_sound(far);
   }
 };
 
@@ -329,19 +349,8 @@ void Simulation::remove_microparticle(std::uint32_t id) {
 }
 
 void Simulation::set_body_forces(const BodyForces& forces) {
-  State& s = *state_;
-  const double largest = s.largest_acceleration();
-  const auto check = [](const char* key, const Vector3d& value, double allowed, const char* unit) {
-    if (!value.allFinite() || value.norm() > allowed)
-      throw InvalidInput(fmt::format("{}: ({}, {}, {}), allowed: finite, a magnitude of up to {:.4g} ({})",
-                                     key, value.x(), value.y(), value.z(), allowed, unit));
-  };
-  check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const Microparticle& particle : s.microparticles.all())
-    if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
-  check("body_forces.magnetic", forces.magnetic, largest * lightest, "k_BT / r_c");
-  s.far = forces;
+  state_->require_sound(forces);
+  state_->far = forces;
 }
 
 const BodyForces& Simulation::body_forces() const { return state_->far; }
@@ -355,7 +364,7 @@ std::vector<DropletEvent> Simulation::take_events() { return state_->tracker.tak
 std::string Simulation::save_state() const {
   Archive archive;
   state_->archive(archive);
-  return archive.bytes();
+  return archive.take();
 }
 
 void Simulation::load_state(const std::string& bytes) {
@@ -364,14 +373,14 @@ void Simulation::load_state(const std::string& bytes) {
   Archive archive(bytes);
   loaded->archive(archive);
   if (!archive.at_end()) throw InvalidInput("saved state: longer than it should be");
-  const std::size_t count = loaded->beads.size();
-  for (const AlignedVector<Record>* array :
-       {&loaded->beads.position, &loaded->beads.predicted, &loaded->beads.velocity, &loaded->beads.force,
-        &loaded->beads.listed})
-    if (array->size() != count) throw InvalidInput("saved state: arrays of unequal length");
+  require_sound(loaded->beads, loaded->next_bead_id, loaded->tracker, s.parameters.domain);
   omp_set_num_threads(s.threads);
-  loaded->pairs.restore(loaded->beads, loaded->wall);
-  loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
+  try {
+    loaded->pairs.restore(loaded->beads, loaded->wall);
+    loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
+  } catch (const std::length_error& crowd) {
+    throw InvalidInput(fmt::format("saved state: {}", crowd.what()));
+  }
   loaded->forces.density(loaded->beads, loaded->wall, loaded->microparticles, loaded->pairs);
   state_ = std::move(loaded);
 }

@@ -120,6 +120,30 @@ dmf_sim::ExplainDroplet::Response to_response(const chip::DropletExplanation& ex
   return response;
 }
 
+namespace {
+
+diagnostic_msgs::DiagnosticStatus checkpoint_diagnostics(const CheckpointStatus& checkpoints,
+                                                         const std::string& hardware) {
+  using diagnostic_msgs::DiagnosticStatus;
+  DiagnosticStatus status;
+  status.name = "chip: checkpoints";
+  status.hardware_id = hardware;
+  status.level = !checkpoints.problem.empty() ? DiagnosticStatus::ERROR
+                 : checkpoints.left_out > 0   ? DiagnosticStatus::WARN
+                                              : DiagnosticStatus::OK;
+  status.message = !checkpoints.wanted            ? "automatic ones are switched off"
+                   : !checkpoints.problem.empty() ? checkpoints.problem
+                   : checkpoints.left_out > 0     ? "the last is still being written"
+                   : checkpoints.name.empty()     ? "none written yet"
+                                                  : fmt::format("step {} saved", checkpoints.step);
+  status.values = {value("last", checkpoints.name), value("step", fmt::format("{}", checkpoints.step)),
+                   value("age (s)", checkpoints.name.empty() ? "" : fmt::format("{:.0f}", checkpoints.age)),
+                   value("left out", fmt::format("{}", checkpoints.left_out))};
+  return status;
+}
+
+}  // namespace
+
 diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const ConversionContext& context) {
   using diagnostic_msgs::DiagnosticStatus;
   const engine::Snapshot& snapshot = *frame.snapshot;
@@ -173,7 +197,7 @@ diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const Conver
 
   diagnostic_msgs::DiagnosticArray array;
   array.header.stamp = to_ros_time(frame.stamp);
-  array.status = {engine, rail};
+  array.status = {engine, rail, checkpoint_diagnostics(frame.checkpoints, engine.hardware_id)};
   return array;
 }
 

@@ -166,12 +166,7 @@ SavedRun EngineThread::save() {
       saved.outcome.message = "refused, the run was halted: " + fault_ + "; its state is not worth keeping";
       return saved;
     }
-    engine::ObserveRequest request;
-    request.hash = true;
-    saved.state = experiment_->save();
-    saved.seed = seed();
-    saved.time = time_of(experiment_->steps());
-    saved.hash = experiment_->observe(request)->state_hash.value_or(0);
+    saved.checkpoint = checkpoint();
     saved.outcome.success = true;
     return saved;
   });

@@ -14,6 +14,10 @@ std::chrono::nanoseconds period(double rate) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate));
 }
 
+std::chrono::nanoseconds seconds(double time) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * time));
+}
+
 const char* kind_name(engine::DropletEvent::Kind kind) {
   switch (kind) {
     case engine::DropletEvent::Kind::appeared:
@@ -52,11 +56,14 @@ std::string describe(const engine::MicroparticleEvent& event) {
 
 }  // namespace
 
-EngineThread::EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings)
+EngineThread::EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings,
+                           chip::CheckpointWriter* writer)
     : experiment_(std::move(experiment)),
       settings_(settings),
-      clock_(settings.ros_seconds_per_time_unit),
-      paused_(settings.paused) {
+      clock_(settings.ros_seconds_per_time_unit, settings.ros_start, time_of(experiment_->steps())),
+      run_(settings.first_run),
+      paused_(settings.paused),
+      writer_(settings.checkpoint_period > 0 ? writer : nullptr) {
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -81,7 +88,11 @@ void EngineThread::stop() {
 void EngineThread::loop() {
   next_step_ = next_frame_ = next_display_ = Clock::now();
   rate_.restart(Clock::now(), experiment_->steps());
+  last_checkpoint_ = Clock::now();
+  next_checkpoint_ = last_checkpoint_ + seconds(settings_.checkpoint_period);
+  saved_progress_ = progress();  // the scene's start, or a checkpoint: there already
   collect_commands();
+  if (!settings_.resumed_from.empty()) note("checkpoint_loaded", settings_.resumed_from);
   while (run_requests()) {
     if (moving()) {
       if (Clock::now() >= next_step_) {
@@ -94,6 +105,7 @@ void EngineThread::loop() {
       wait_until(next_frame_);
     }
     publish_if_due();
+    checkpoint_if_due();
   }
 }
 
@@ -165,6 +177,7 @@ void EngineThread::begin_run(double old_time) {
   rate_.restart(Clock::now(), experiment_->steps());
   commands_seen_ = 0;
   served_listeners_ = 0;
+  next_checkpoint_ = Clock::now();  // who comes back shall not find the run that was left
   collect_commands();
   publish_soon();
 }
@@ -223,6 +236,9 @@ std::shared_ptr<const Frame> EngineThread::make_frame(const engine::ObserveReque
   }
   frame->paused = paused_;
   frame->fault = fault_;
+  frame->checkpoints = checkpoints_;
+  frame->checkpoints.wanted = writer_ != nullptr;
+  frame->checkpoints.age = std::chrono::duration<double>(Clock::now() - last_checkpoint_).count();
   if (moving()) {
     frame->steps_per_second = rate_.update(Clock::now(), experiment_->steps());
   } else {

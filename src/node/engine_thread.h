@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "chip/checkpoint_file.h"
+#include "chip/checkpoint_writer.h"
 #include "chip/experiment.h"
 #include "node/frame.h"
 #include "node/outbox.h"
@@ -33,6 +35,12 @@ struct EngineSettings {
   double display_rate = 10;  ///< frames with beads per second while wanted, Hz, > 0
   double max_steps_per_second = 0;          ///< 0: as fast as it can
   double ros_seconds_per_time_unit = 0.02;  ///< ROS seconds per tau, > 0
+  double checkpoint_period = 60;            ///< s of wall time between two automatic checkpoints; 0: none
+
+  // Where an earlier process of this node was (node/start.h).
+  std::uint32_t first_run = 0;                 ///< run number of the first run
+  std::uint64_t ros_start = RunClock::kStart;  ///< ns of ROS time at which it begins
+  std::string resumed_from;                    ///< what it goes on from, for people; empty: the scene's start
 };
 
 /// Whether something was done, and the sentence for whoever asked.
@@ -48,13 +56,10 @@ struct Explained {
   chip::DropletExplanation explanation;
 };
 
-/// The complete state of a run with what a person wants to know of it.
+/// The complete state of a run.
 struct SavedRun {
   Outcome outcome;
-  std::string state;  ///< for load()
-  std::uint64_t seed = 0;
-  double time = 0;         ///< tau
-  std::uint64_t hash = 0;  ///< of the state
+  chip::Checkpoint checkpoint;
 };
 
 /// The thread that owns the experiment: takes requests between two steps, steps, and leaves frames in the
@@ -67,7 +72,9 @@ class EngineThread {
   static constexpr std::uint64_t kClockTick =
       10'000'000;  ///< ns of ROS time after which the clock is told anew
 
-  EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings);
+  /// @param writer  of the automatic checkpoints; must outlive the thread. Null: none are written.
+  EngineThread(std::unique_ptr<chip::Experiment> experiment, const EngineSettings& settings,
+               chip::CheckpointWriter* writer = nullptr);
   ~EngineThread();
   EngineThread(const EngineThread&) = delete;
   EngineThread& operator=(const EngineThread&) = delete;
@@ -108,6 +115,9 @@ class EngineThread {
   /// Ends the thread after the step in progress and answers every open request with EngineStopped.
   /// Idempotent.
   void stop();
+  /// Once stopped: writes the run as it ended, and returns when that is done. @returns what became of it, for
+  /// people; empty when there was nothing new to write.
+  std::string write_last_checkpoint();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -138,6 +148,9 @@ class EngineThread {
   void collect_commands();
   void collect_scheduled();
   void collect_events();
+  chip::Checkpoint checkpoint() const;
+  void checkpoint_if_due();
+  void note_checkpoints();
   void note(const std::string& kind, const std::string& message);
   void note(const std::string& kind, const std::string& message, std::uint64_t step);
   double time_of(std::uint64_t step) const;
@@ -159,6 +172,22 @@ class EngineThread {
   std::uint64_t last_tick_ = 0;         ///< ns
   std::uint32_t served_listeners_ = 0;  ///< of the capacitance, that had a reading
   bool paced_ = false;                  ///< waited for max_steps_per_second since the last frame
+
+  /// What a checkpoint would hold: the same again is not written.
+  struct Progress {
+    std::uint32_t run;
+    std::uint64_t step;
+    std::size_t commands;
+    bool paused;
+    bool operator==(const Progress& other) const {
+      return run == other.run && step == other.step && commands == other.commands && paused == other.paused;
+    }
+  };
+  Progress progress() const;
+  chip::CheckpointWriter* writer_;
+  Clock::time_point next_checkpoint_, last_checkpoint_;
+  std::optional<Progress> saved_progress_;  ///< when the last one was handed to the writer, or at the start
+  CheckpointStatus checkpoints_;
 
   // Shared.
   std::atomic<bool> beads_wanted_{false};

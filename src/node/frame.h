@@ -13,6 +13,16 @@ namespace dmf::node {
 /// What keeps the run from being faster.
 enum class Limit { engine, max_steps_per_second, paused, fault };
 
+/// How the automatic checkpoints fare.
+struct CheckpointStatus {
+  bool wanted = false;
+  std::string name;            ///< of the last one that was written; empty before the first
+  std::uint64_t step = 0;      ///< of that one
+  double age = 0;              ///< since it was written, s of wall time
+  std::string problem;         ///< why the last attempt failed; empty: it did not
+  std::uint32_t left_out = 0;  ///< since then, for the one before was still being written
+};
+
 /// Everything that the publisher needs to know of one moment between two steps. Immutable once made, so that
 /// the engine can go on while it is being serialised. Reduced units, as in the snapshot.
 struct Frame {
@@ -29,6 +39,7 @@ struct Frame {
   std::vector<std::vector<std::uint32_t>> channels;  ///< under each droplet of the snapshot, in its order
   bool paused = false;
   std::string fault;  ///< empty while the run is sound
+  CheckpointStatus checkpoints;
   double steps_per_second = 0;
   Limit limit = Limit::engine;
 };

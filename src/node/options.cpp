@@ -1,6 +1,7 @@
 #include "node/options.h"
 
 #include <cstdlib>
+#include <limits>
 
 #include "node/parameter_reader.h"
 
@@ -32,6 +33,10 @@ Options load_options(const ros::NodeHandle& private_handle) {
   std::string checkpoint_dir = default_checkpoint_dir();
   reader.text("checkpoint_dir", checkpoint_dir);
   options.checkpoint_dir = checkpoint_dir;
+  reader.number("checkpoint_period", 0, 1e6, options.engine.checkpoint_period);
+  reader.integer("checkpoint_keep", 1, 1000, options.checkpoint_keep);
+  reader.choice("resume", {"false", "true", "respawned"}, options.resume);
+  reader.integer("respawn_from", 0, std::numeric_limits<int>::max(), options.respawn_from);
   reader.finish();
   return options;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
@@ -60,6 +61,21 @@ void ParameterReader::text(const std::string& key, std::string& result) {
       result = static_cast<std::string>(*value);
     } else {
       refuse(key, *value, "text that is not empty");
+    }
+  }
+}
+
+void ParameterReader::choice(const std::string& key, const std::vector<std::string>& words,
+                             std::string& result) {
+  if (const auto value = find(key)) {
+    std::string given;
+    if (value->getType() == XmlRpc::XmlRpcValue::TypeString) given = static_cast<std::string>(*value);
+    if (value->getType() == XmlRpc::XmlRpcValue::TypeBoolean)
+      given = static_cast<bool>(*value) ? "true" : "false";
+    if (std::find(words.begin(), words.end(), given) != words.end()) {
+      result = given;
+    } else {
+      refuse(key, *value, fmt::format("{}", fmt::join(words, ", ")));
     }
   }
 }

@@ -20,6 +20,8 @@ class ParameterReader {
   void integer(const std::string& key, int low, int high, int& result);
   void flag(const std::string& key, bool& result);
   void text(const std::string& key, std::string& result);
+  /// One of these words; true and false may be given as such.
+  void choice(const std::string& key, const std::vector<std::string>& words, std::string& result);
   /// Launch files leave a seed that is not given empty; numbers beyond 2^31 come as text, XML-RPC has no
   /// larger ones.
   void seed(const std::string& key, std::optional<std::uint64_t>& result);

@@ -38,8 +38,8 @@ std::set<std::uint32_t> take_gone(std::set<std::uint32_t>& drawn, const std::vec
 }  // namespace
 
 Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
-                     const ConversionContext& context)
-    : engine_(engine), context_(context) {
+                     const ConversionContext& context, MasterMemory& memory)
+    : engine_(engine), context_(context), memory_(memory) {
   clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kStateQueue);
   diagnostics_ = handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kStateQueue);
   state_ = private_handle.advertise<dmf_sim::ChipState>("state", kStateQueue);
@@ -77,6 +77,8 @@ void Publisher::loop() {
 }
 
 void Publisher::publish(const Outbox::Delivery& delivery) {
+  if (delivery.frame) memory_.before_run(delivery.frame->run);
+  for (const CommandNote& command : delivery.commands) memory_.before_run(command.run);
   // The clock first: what follows then never lies in its subscribers' future.
   if (delivery.clock > 0) publish_clock(delivery.clock);
   for (const CommandNote& command : delivery.commands) publish_command(command);
@@ -86,6 +88,7 @@ void Publisher::publish(const Outbox::Delivery& delivery) {
 }
 
 void Publisher::publish_clock(std::uint64_t nanoseconds) {
+  memory_.before_clock(nanoseconds);
   rosgraph_msgs::Clock message;
   message.clock = to_ros_time(nanoseconds);
   clock_.publish(message);

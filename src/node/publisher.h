@@ -14,6 +14,7 @@
 
 #include "node/convert.h"
 #include "node/engine_thread.h"
+#include "node/master_memory.h"
 
 namespace dmf::node {
 
@@ -21,9 +22,9 @@ namespace dmf::node {
 /// and publishes them, so that the engine waits neither for serialisation nor for a subscriber.
 class Publisher {
  public:
-  /// @param engine, context  must outlive this.
+  /// @param engine, context, memory  must outlive this.
   Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
-            const ConversionContext& context);
+            const ConversionContext& context, MasterMemory& memory);
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
@@ -47,6 +48,7 @@ class Publisher {
 
   EngineThread& engine_;
   const ConversionContext& context_;
+  MasterMemory& memory_;
   ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, commands_,
       events_, layout_, diagnostics_, capacitance_;
   tf2_ros::TransformBroadcaster transforms_;

@@ -1,5 +1,7 @@
 #include "node/services.h"
 
+#include "node/start.h"
+
 #include <fmt/format.h>
 
 #include <stdexcept>
@@ -174,16 +176,17 @@ bool Services::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 
 bool Services::save_checkpoint(dmf_sim::Checkpoint::Request& request,
                                dmf_sim::Checkpoint::Response& response) {
-  SavedRun run = engine_.save();
+  if (is_automatic(request.path)) {
+    response.message = fmt::format(
+        "path: \"{}\", allowed: a name that does not begin with \"{}\": those are written and taken away "
+        "automatically",
+        request.path, kAutomatic);
+    return true;
+  }
+  const SavedRun run = engine_.save();
   response.message = run.outcome.message;
   if (!run.outcome.success) return true;
-  chip::Checkpoint checkpoint;
-  checkpoint.scene = context_.scene.name;
-  checkpoint.seed = run.seed;
-  checkpoint.step = run.outcome.step;
-  checkpoint.time = run.time;
-  checkpoint.state_hash = run.hash;
-  checkpoint.state = std::move(run.state);
+  const chip::Checkpoint& checkpoint = run.checkpoint;
   try {
     checkpoints_.write(request.path, checkpoint);  // on this thread: the engine does not wait for the disk
   } catch (const std::exception& error) {

@@ -2,13 +2,48 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "engine/simulation.h"
 #include "engine/wait_policy.h"
 #include "tools/explain.h"
 #include "tools/headless_run.h"
+
+namespace {
+
+constexpr int kTryAgain = 75;  // EX_TEMPFAIL of sysexits.h
+
+/// A word of a command line as a shell takes it.
+std::string quoted(const std::string& word) {
+  if (!word.empty() && word.find_first_of(" \t\n'\"\\$&;|<>()*?[]#~`!{}") == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// The command line of an interrupted run, with --resume. @returns the exit status.
+int tell_how_to_go_on(const dmf::tools::RunResult& result, const dmf::tools::RunOptions& options, int argc,
+                      char** argv) {
+  const char* signal = result.interrupted_by == SIGTERM ? "SIGTERM" : "SIGINT";
+  if (options.output.empty()) {
+    fmt::print(stderr, "dmf_run: {} at step {}; nothing is saved without --out\n", signal, result.steps);
+    return 128 + result.interrupted_by;
+  }
+  std::string again;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--resume") ++i;
+    if (word.rfind("--resume", 0) != 0) again += quoted(word) + " ";
+  }
+  fmt::print(stderr, "dmf_run: {} at step {}, saved; to go on: {}--resume {}\n", signal, result.steps, again,
+             quoted(options.output));
+  return kTryAgain;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace dmf;
@@ -35,7 +70,17 @@ int main(int argc, char** argv) {
       app.add_option("--out", options.output, "folder for droplets.csv, microparticles.csv and checkpoints");
   app.add_option("--checkpoint-every", options.checkpoint_every, "steps between checkpoints in --out")
       ->needs(output);
-  app.add_option("--resume", options.resume, "go on from the newest good checkpoint of this folder")
+  app.add_option("--checkpoint-period", options.checkpoint_period,
+                 "seconds of wall time between checkpoints in --out")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(output);
+  app.add_option("--checkpoint-keep", options.checkpoint_keep, "how many of them stay, 0: all")
+      ->capture_default_str()
+      ->needs(output);
+  app.add_option(
+         "--resume", options.resume,
+         "go on from the newest good checkpoint of this folder; with the same --out its tables end as "
+         "if the run had never stopped")
       ->check(CLI::ExistingDirectory);
   auto* explain_flag =
       app.add_flag("--explain", explain_only,
@@ -49,7 +94,12 @@ int main(int argc, char** argv) {
   app.add_flag("--hash", hash, "print the hash of the final state");
   app.add_flag("--json", options.json, "the last line is one JSON object");
   app.add_flag("--quiet", options.quiet, "no progress line");
+  app.footer(
+      "SIGINT (Ctrl-C) and SIGTERM end a run after the step it is in, with a checkpoint in --out if there is "
+      "one.\nExit status: 0 done, 75 ended by such a signal with a checkpoint to --resume from, 128 + the "
+      "signal\nwithout one, 1 an error, above 100 bad options.");
   CLI11_PARSE(app, argc, argv);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is a write that fails, not the end of the run
   try {
     const bool is_board = chip::is_board_file(options.scene);
     if (is_board && !explain_only) {
@@ -76,6 +126,7 @@ int main(int argc, char** argv) {
           "temperature {:.4f}\n",
           result.scene, result.beads, result.steps, result.time, result.wall_s, result.ns_per_bead_step,
           result.kernel, result.threads, result.temperature);
+    if (result.interrupted_by != 0) return tell_how_to_go_on(result, options, argc, argv);
   } catch (const std::exception& problem) {
     fmt::print(stderr, "dmf_run: {}\n", problem.what());
     return 1;

@@ -4,117 +4,27 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
 
-#include "chip/checkpoint_file.h"
+#include "chip/checkpoint_series.h"
+#include "chip/checkpoint_writer.h"
+#include "tools/run_log.h"
 
 namespace dmf::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::atomic<bool> interrupted{false};
-extern "C" void on_interrupt(int) { interrupted = true; }
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// A table in a file that is there once it has a line. Without a folder it keeps nothing.
-class Table {
- public:
-  Table(const std::string& folder, const char* name, bool append, const char* head)
-      : file_(folder.empty() ? "" : folder + "/" + name), append_(append), head_(head) {}
-
-  bool wanted() const { return !file_.empty(); }
-
-  void add(const std::string& line) {
-    if (!wanted()) return;
-    if (!out_.is_open()) open();
-    out_ << line << '\n';
-  }
-
-  void flush() {
-    if (!out_.is_open()) return;
-    out_.flush();
-    if (!out_) throw std::runtime_error(fmt::format("{}: write failed; is the disk full?", file_));
-  }
-
- private:
-  void open() {
-    const bool fresh = !append_ || !std::filesystem::exists(file_);
-    out_.open(file_, fresh ? std::ios::trunc : std::ios::app);
-    if (!out_) throw std::runtime_error(fmt::format("{}: can't be written", file_));
-    if (fresh) out_ << head_ << '\n';
-  }
-
-  std::string file_;
-  bool append_;
-  const char* head_;
-  std::ofstream out_;
-};
-
-/// One line a look and droplet, and a look and microparticle; droplets in SI units beside reduced ones.
-class Log {
- public:
-  Log(const std::string& folder, bool append)
-      : droplets_(
-            folder, "droplets.csv", append,
-            "step,time_mdpd,time_s,droplet,beads,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vx_mm_per_s,vy_mm_"
-            "per_s,footprint_area_mdpd,height_mdpd,advancing_deg,receding_deg,temperature"),
-        microparticles_(
-            folder, "microparticles.csv", append,
-            "step,time_mdpd,time_s,microparticle,x_mdpd,y_mdpd,z_mdpd,vx_mdpd,vy_mdpd,vz_mdpd,wx_mdpd,"
-            "wy_mdpd,wz_mdpd,contact_fraction,normal_force_mdpd,drive_x_mdpd,drive_y_mdpd,"
-            "drive_z_mdpd,friction_x_mdpd,friction_y_mdpd,immersion,droplet,place") {
-    if (!folder.empty()) std::filesystem::create_directories(folder);
-  }
-
-  void write(const engine::Snapshot& snapshot, const engine::Units& units) {
-    if (!droplets_.wanted()) return;
-    for (const auto& droplet : snapshot.droplets) add(droplet, snapshot, units);
-    for (const auto& body : snapshot.microparticles) add(body, snapshot, units);
-    droplets_.flush();
-    microparticles_.flush();
-  }
-
- private:
-  void add(const engine::DropletObservation& d, const engine::Snapshot& snapshot,
-           const engine::Units& units) {
-    const double to_mm_per_s = units.velocity_m_per_s() * 1e3;
-    droplets_.add(fmt::format(
-        "{},{:.6g},{:.6g},{},{},{:.5f},{:.5f},{:.5f},{:.6f},{:.6f},{:.4f},{:.4f},{:.3f},{:.3f},{:.2f},{:."
-        "2f},{:.5f}",
-        snapshot.step, snapshot.time, snapshot.time * units.time_s, d.id, d.beads, d.centroid.x(),
-        d.centroid.y(), d.centroid.z(), d.velocity.x(), d.velocity.y(), d.velocity.x() * to_mm_per_s,
-        d.velocity.y() * to_mm_per_s, d.footprint_area, d.height, d.advancing_angle.value_or(NAN),
-        d.receding_angle.value_or(NAN), snapshot.temperature));
-  }
-
-  void add(const engine::MicroparticleObservation& m, const engine::Snapshot& snapshot,
-           const engine::Units& units) {
-    constexpr std::array<const char*, 4> kPlaces{"dry", "front", "rear", "inside"};
-    const auto vector = [](const engine::Vector3d& v) {
-      return fmt::format("{:.6f},{:.6f},{:.6f}", v.x(), v.y(), v.z());
-    };
-    microparticles_.add(
-        fmt::format("{},{:.6g},{:.6g},{},{},{},{},{:.3f},{:.5f},{},{:.5f},{:.5f},{:.4f},{},{}", snapshot.step,
-                    snapshot.time, snapshot.time * units.time_s, m.id, vector(m.position), vector(m.velocity),
-                    vector(m.angular_velocity), m.contact_fraction, m.normal_force, vector(m.drive_force),
-                    m.friction_force.x(), m.friction_force.y(), m.immersion, m.droplet,
-                    kPlaces.at(static_cast<std::size_t>(m.place))));
-  }
-
-  Table droplets_, microparticles_;
-};
 
 /// A line that rewrites itself on a terminal, at most five times a second.
 class Progress {
@@ -139,34 +49,115 @@ class Progress {
   Clock::time_point start_ = Clock::now(), last_ = start_ - std::chrono::seconds(1);
 };
 
-void write_checkpoint(const std::string& folder, const chip::Experiment& experiment) {
-  const auto snapshot = experiment.observe({false, true});
-  chip::Checkpoint checkpoint;
-  checkpoint.scene = experiment.scene().name;
-  checkpoint.seed = experiment.simulation().parameters().seed;
-  checkpoint.step = snapshot->step;
-  checkpoint.time = snapshot->time;
-  checkpoint.state_hash = *snapshot->state_hash;
-  checkpoint.state = experiment.save();
-  chip::CheckpointFolder(folder).write(fmt::format("step_{:012}.checkpoint", snapshot->step), checkpoint);
+/// The checkpoints of a folder that dmf_run writes.
+chip::CheckpointSeries series_in(const std::string& folder, unsigned keep) {
+  return {folder, "step_", ".checkpoint", chip::CheckpointSeries::Numbering::by_step,
+          keep > 0 ? keep : std::numeric_limits<unsigned>::max()};
 }
 
-/// The newest checkpoint that can be read. Damaged ones are named on standard error and passed over.
-void resume_from(const std::string& folder, chip::Experiment& experiment) {
-  const chip::CheckpointFolder checkpoints(folder);
-  std::vector<std::string> names = checkpoints.names();
-  names.erase(std::remove_if(names.begin(), names.end(),
-                             [](const std::string& name) { return name.rfind("step_", 0) != 0; }),
-              names.end());
-  for (auto name = names.rbegin(); name != names.rend(); ++name) try {
-      experiment.load(checkpoints.read(*name).state);
-      return;
-    } catch (const engine::InvalidInput& problem) {
-      fmt::print(stderr, "{}: passed over: {}\n", *name, problem.what());
-    }
-  throw engine::InvalidInput(
-      fmt::format("--resume: {}, allowed: a folder with a good step_*.checkpoint of this scene", folder));
+/// Damaged checkpoints are named on standard error and passed over.
+void resume_from(const RunOptions& options, chip::Experiment& experiment) {
+  const auto point =
+      chip::resume(experiment, series_in(options.resume, options.checkpoint_keep), {0, options.seed},
+                   [](const std::string& why) { fmt::print(stderr, "{}\n", why); });
+  if (!point)
+    throw engine::InvalidInput(fmt::format(
+        "--resume: {}, allowed: a folder with a good step_*.checkpoint of this scene", options.resume));
 }
+
+/// Writes checkpoints as they were asked for, and says once when they begin to fail and when they are written
+/// again: the run goes on without.
+class Checkpoints {
+ public:
+  Checkpoints(const RunOptions& options, chip::CheckpointSeries series)
+      : every_(options.checkpoint_every), period_(options.checkpoint_period), writer_(std::move(series)) {}
+
+  /// After a step.
+  void write_if_due(const chip::Experiment& experiment, RunLog& log) {
+    if (every_ > 0 && experiment.steps() % every_ == 0) {
+      writer_.wait();
+      put(experiment, log);
+    } else if (period_ > 0 && seconds_since(last_) >= period_ && !writer_.busy()) {
+      put(experiment, log);
+    }
+    report();
+  }
+
+  /// The last one. @throws std::runtime_error when it can't be written.
+  void write_last(const chip::Experiment& experiment, RunLog& log) {
+    writer_.wait();
+    report();
+    put(experiment, log);
+    writer_.wait();
+    for (const auto& written : writer_.take_reports())
+      if (!written.problem.empty())
+        throw std::runtime_error("interrupted, and not saved: " + written.problem);
+  }
+
+ private:
+  void put(const chip::Experiment& experiment, RunLog& log) {
+    // First the tables: what is resumed finds all lines before its step.
+    log.sync();
+    // While the last one is still being written this one is left out, and the next is due at once.
+    if (writer_.put(chip::checkpoint_of(experiment))) last_ = Clock::now();
+  }
+
+  void report() {
+    for (const auto& written : writer_.take_reports()) {
+      const bool fails = !written.problem.empty();
+      if (fails && !failing_)
+        fmt::print(stderr, "\nstep {}: no checkpoint, the run goes on: {}\n", written.step, written.problem);
+      if (!fails && failing_) fmt::print(stderr, "\nstep {}: checkpoints are written again\n", written.step);
+      failing_ = fails;
+    }
+  }
+
+  std::uint64_t every_;
+  double period_;
+  chip::CheckpointWriter writer_;
+  Clock::time_point last_ = Clock::now();
+  bool failing_ = false;
+};
+
+/// Where a run of these options writes its checkpoints. A run that may still be gone on with is not
+/// overwritten. @throws engine::InvalidInput then, and when another process writes there.
+chip::CheckpointSeries claim_output(const RunOptions& options) {
+  chip::CheckpointSeries series = series_in(options.output, options.checkpoint_keep);
+  if (options.resume.empty() && !series.numbers().empty()) {
+    throw engine::InvalidInput(
+        fmt::format("--out: {} has checkpoints of a run up to step {}, allowed: --resume {}, or a folder "
+                    "without step_*.checkpoint",
+                    options.output, series.numbers().back(), options.output));
+  }
+  series.claim();
+  return series;
+}
+
+/// SIGINT and SIGTERM are noted while this lives, a second time they do what they did before.
+class SignalsNoted {
+ public:
+  SignalsNoted() {
+    noted = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int signal) { noted = signal; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(SIGINT, &action, &interrupt_);
+    ::sigaction(SIGTERM, &action, &terminate_);
+  }
+  ~SignalsNoted() {
+    ::sigaction(SIGINT, &interrupt_, nullptr);
+    ::sigaction(SIGTERM, &terminate_, nullptr);
+  }
+  SignalsNoted(const SignalsNoted&) = delete;
+  SignalsNoted& operator=(const SignalsNoted&) = delete;
+  int which() const { return noted; }  ///< 0: none
+
+ private:
+  static volatile std::sig_atomic_t noted;
+  struct sigaction interrupt_ {
+  }, terminate_{};
+};
+volatile std::sig_atomic_t SignalsNoted::noted = 0;
 
 std::uint64_t last_step(const RunOptions& options, const chip::Scene& scene) {
   if (options.steps) return *options.steps;
@@ -178,36 +169,40 @@ std::uint64_t last_step(const RunOptions& options, const chip::Scene& scene) {
 
 RunResult headless_run(const RunOptions& options) {
   const chip::Scene scene = chip::load_scene(options.scene);
+  std::optional<Checkpoints> checkpoints;
+  if (!options.output.empty()) checkpoints.emplace(options, claim_output(options));
   chip::Experiment experiment(scene, {options.threads, options.kernel}, options.seed);
-  if (!options.resume.empty()) resume_from(options.resume, experiment);
-  Log log(options.output, !options.resume.empty());
-
-  interrupted = false;
-  const auto previous_int = std::signal(SIGINT, on_interrupt),
-             previous_term = std::signal(SIGTERM, on_interrupt);
+  if (!options.resume.empty()) resume_from(options, experiment);
   const std::uint64_t from = experiment.steps(), to = std::max(from, last_step(options, scene));
+  const std::uint64_t look = scene.parameters.observe_interval;
+
+  std::optional<std::uint64_t> kept;
+  if (!options.resume.empty()) kept = from;
+  // A run that ended between two looks had one at its end, which one that goes farther has not.
+  if (kept && from % look != 0 && from < to) kept = from - 1;
+  RunLog log(options.output, kept);
+
+  const SignalsNoted signals;
   double temperature_sum = 0, looks = 0, bead_steps = 0;
   const auto start = Clock::now();
   {
     Progress progress(from, to, options.quiet);
-    while (experiment.steps() < to && !interrupted) {
+    while (experiment.steps() < to && signals.which() == 0) {
       experiment.step();
       const std::uint64_t step = experiment.steps();
-      if (step % scene.parameters.observe_interval == 0 || step == to) {
+      if (step % look == 0 || step == to) {
         const auto snapshot = experiment.observe();
         temperature_sum += snapshot->temperature;
         looks += 1;
-        bead_steps += static_cast<double>(snapshot->moving_beads) * scene.parameters.observe_interval;
+        bead_steps += static_cast<double>(snapshot->moving_beads) * static_cast<double>(look);
         log.write(*snapshot, scene.units);
         progress.show(step);
       }
-      if (options.checkpoint_every > 0 && step % options.checkpoint_every == 0)
-        write_checkpoint(options.output, experiment);
+      if (checkpoints) checkpoints->write_if_due(experiment, log);
     }
   }
-  if (interrupted && !options.output.empty()) write_checkpoint(options.output, experiment);
-  std::signal(SIGINT, previous_int);
-  std::signal(SIGTERM, previous_term);
+  const bool interrupted = experiment.steps() < to;
+  if (interrupted && checkpoints) checkpoints->write_last(experiment, log);
 
   RunResult result;
   result.wall_s = seconds_since(start);
@@ -221,6 +216,7 @@ RunResult headless_run(const RunOptions& options) {
   result.ns_per_bead_step = bead_steps > 0 ? result.wall_s * 1e9 / bead_steps : 0;
   result.temperature = looks > 0 ? temperature_sum / looks : end->temperature;
   result.hash = *end->state_hash;
+  if (interrupted) result.interrupted_by = signals.which();
   return result;
 }
 

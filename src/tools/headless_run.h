@@ -17,7 +17,9 @@ struct RunOptions {
   std::string kernel = "auto";
   std::string output;  ///< folder for droplets.csv, microparticles.csv, checkpoints; empty: none
   std::uint64_t checkpoint_every = 0;  ///< steps; 0: none
-  std::string resume;                  ///< folder with checkpoints to go on from
+  double checkpoint_period = 0;        ///< s of wall time between two checkpoints; 0: none
+  unsigned checkpoint_keep = 3;        ///< how many checkpoints stay; 0: all
+  std::string resume;                  ///< folder with checkpoints to go on from, of `seed` if it is given
   bool json = false;                   ///< last line of standard output is JSON
   bool quiet = false;                  ///< no progress line
 };
@@ -34,13 +36,20 @@ struct RunResult {
   double ns_per_bead_step = 0;
   double temperature = 0;
   std::uint64_t hash = 0;
+  int interrupted_by = 0;  ///< the signal that ended it early; 0: it is complete
 };
 
 /// Runs a scene without ROS, by its own schedule. A progress line with steps/s and time left goes to standard
-/// error when that is a terminal. Ends early, with a checkpoint when there is an output folder, on SIGINT and
-/// SIGTERM.
-/// @throws engine::InvalidInput for bad options; engine::Instability; std::runtime_error when a file can't be
-/// written.
+/// error when that is a terminal. Ends early on SIGINT and SIGTERM, with a checkpoint when there is an output
+/// folder.
+///
+/// A run that goes on with `output` where it wrote before leaves the files of one that was never interrupted,
+/// however it was: lines after the checkpoint are written again. A checkpoint that can't be written is told
+/// on standard error, and the run goes on; a table that can't be written ends it, for its lines would be
+/// lost.
+/// @throws engine::InvalidInput for bad options, an output folder with a run that could be resumed or that
+/// another process writes to; engine::Instability; std::runtime_error when a table, or the checkpoint of a
+/// run that was interrupted, can't be written.
 RunResult headless_run(const RunOptions& options);
 
 /// {"scene": ..., "beads": ..., "steps": ..., "wall_s": ..., "ns_per_bead_step": ..., "temperature": ...,

@@ -140,7 +140,7 @@ class Run {
     archive(course);
     flow.archive(archive);
     archive(bytes);
-    return archive.bytes();
+    return archive.take();
   }
 
   void restore(const std::string& state) {

@@ -191,7 +191,7 @@ std::string state_of(const chip::Experiment& experiment, std::vector<TransportRe
   engine::Archive archive;
   archive(records);
   archive(bytes);
-  return archive.bytes();
+  return archive.take();
 }
 
 /// @returns the records up to the state.

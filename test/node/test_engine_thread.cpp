@@ -209,12 +209,12 @@ TEST(EngineThread, ARestoredRunGoesOnWithTheSameBits) {
   engine.advance(30);
   const SavedRun saved = engine.save();
   ASSERT_TRUE(saved.outcome.success);
-  EXPECT_EQ(saved.hash, engine.inspect(true)->snapshot->state_hash);
+  EXPECT_EQ(saved.checkpoint.state_hash, engine.inspect(true)->snapshot->state_hash);
   engine.advance(30);
   const auto uninterrupted = engine.inspect(true)->snapshot->state_hash;
 
   EngineThread other(tiny_experiment(), paused());
-  ASSERT_TRUE(other.load(saved.state, "saved").success);
+  ASSERT_TRUE(other.load(saved.checkpoint.state, "saved").success);
   EXPECT_EQ(other.inspect(false)->rail.voltage, 63);
   other.advance(30);
   EXPECT_EQ(other.inspect(true)->snapshot->state_hash, uninterrupted);

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "refusal.h"
 #include "tools/explain.h"
 #include "tools/headless_run.h"
 
@@ -49,6 +53,91 @@ TEST(HeadlessRun, ResumePassesOverADamagedCheckpoint) {
   EXPECT_EQ(headless_run(second).hash, headless_run(tiny(200)).hash);
   std::filesystem::resize_file(folder + "/step_000000000050.checkpoint", 1000);
   EXPECT_THROW(headless_run(second), engine::InvalidInput);
+}
+
+std::string contents(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(HeadlessRun, ResumedTablesAreThoseOfAnUninterruptedRun) {
+  RunOptions whole = tiny(300);
+  whole.output = fresh_folder("whole");
+  headless_run(whole);
+  // It got to step 230, and saved step 200 last; the last line was cut off. 230 is no look of a longer run.
+  RunOptions killed = tiny(230);
+  killed.output = fresh_folder("killed");
+  killed.checkpoint_every = 100;
+  headless_run(killed);
+  const std::string table = killed.output + "/droplets.csv";
+  ASSERT_NE(contents(table).find("\n230,"), std::string::npos);
+  std::filesystem::resize_file(table, std::filesystem::file_size(table) - 5);
+  RunOptions resumed = tiny(300, 2);
+  resumed.output = resumed.resume = killed.output;
+  headless_run(resumed);
+  EXPECT_EQ(contents(table), contents(whole.output + "/droplets.csv"));
+}
+
+TEST(HeadlessRun, ACheckpointBetweenTwoLooksLeavesNoLineOfItsOwn) {
+  RunOptions whole = tiny(150);
+  whole.output = fresh_folder("looks");
+  headless_run(whole);
+  RunOptions first = tiny(70);
+  first.output = fresh_folder("between");
+  first.checkpoint_every = 70;
+  headless_run(first);
+  RunOptions second = tiny(150);
+  second.output = second.resume = first.output;
+  headless_run(second);
+  EXPECT_EQ(contents(first.output + "/droplets.csv"), contents(whole.output + "/droplets.csv"));
+}
+
+TEST(HeadlessRun, KeepsTheLastCheckpointsAndNeverOverwritesARunThatCanBeResumed) {
+  RunOptions options = tiny(100);
+  options.output = fresh_folder("keep");
+  options.checkpoint_every = 20;
+  options.checkpoint_keep = 2;
+  headless_run(options);
+  EXPECT_FALSE(std::filesystem::exists(options.output + "/step_000000000060.checkpoint"));
+  EXPECT_TRUE(std::filesystem::exists(options.output + "/step_000000000080.checkpoint"));
+  EXPECT_TRUE(std::filesystem::exists(options.output + "/step_000000000100.checkpoint"));
+  const std::string before = contents(options.output + "/droplets.csv");
+  const std::string why = refusal([&] { headless_run(options); });
+  EXPECT_TRUE(holds(why, "up to step 100, allowed: --resume " + options.output));
+  EXPECT_EQ(contents(options.output + "/droplets.csv"), before);
+}
+
+TEST(HeadlessRun, ResumesNoRunOfAnotherSeed) {
+  RunOptions options = tiny(100);
+  options.resume = checkpoints_of(50, "seed");
+  options.seed = 99;
+  EXPECT_TRUE(holds(refusal([&] { headless_run(options); }), "--resume"));
+  options.seed = 7;  // the scene's
+  EXPECT_EQ(headless_run(options).hash, headless_run(tiny(100)).hash);
+}
+
+TEST(HeadlessRun, ADiskThatRefusesCheckpointsEndsNeitherTheRunNorItsTables) {
+  RunOptions options = tiny(100);
+  options.output = fresh_folder("full");
+  options.checkpoint_every = 20;
+  // No file may be longer than this: a checkpoint fails half way, as on a full disk.
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  struct rlimit small = before;
+  small.rlim_cur = 1 << 15;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  testing::internal::CaptureStderr();
+  const std::uint64_t hash = headless_run(options).hash;
+  const std::string told = testing::internal::GetCapturedStderr();
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(hash, headless_run(tiny(100)).hash);
+  EXPECT_TRUE(holds(told, "step 20: no checkpoint, the run goes on: can't write"));
+  EXPECT_EQ(told.find("no checkpoint"), told.rfind("no checkpoint")) << "told once: " << told;
+  EXPECT_NE(contents(options.output + "/droplets.csv").find("\n100,"), std::string::npos);
+  for (const auto& file : std::filesystem::directory_iterator(options.output))
+    EXPECT_EQ(file.path().filename().string().find("step_0"), std::string::npos) << file.path();
 }
 
 TEST(HeadlessRun, LogsMicroparticlesWhereThereAreAny) {

@@ -1,5 +1,7 @@
 #include "engine/observe/droplet_tracker.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/geometry.hpp>
@@ -333,6 +335,28 @@ void DropletTracker::archive(Archive& archive) {
   if (count > ids.size()) throw InvalidInput("saved state: more droplets than remembered");
   droplets_.resize(count);
   for (DropletObservation& droplet : droplets_) archive_droplet(archive, droplet);
+  if (archive.reading()) require_sound();
+}
+
+void DropletTracker::require_sound() const {
+  const auto remembered = [this](std::uint32_t id) { return memory_.count(id) > 0; };
+  for (const auto& [id, memory] : memory_)
+    if (id == 0 || id >= next_id_ || !memory.velocity.allFinite())
+      throw InvalidInput(fmt::format("saved state: droplet {}, allowed: below {}", id, next_id_));
+  for (const std::uint32_t droplet : droplet_of_bead_)
+    if (droplet != 0 && !remembered(droplet))
+      throw InvalidInput(fmt::format("saved state: a bead of droplet {}, which is not there", droplet));
+  std::uint32_t before = 0;
+  for (const DropletObservation& droplet : droplets_) {
+    if (!remembered(droplet.id) || droplet.id <= before)
+      throw InvalidInput(
+          fmt::format("saved state: droplet {}, allowed: rising ids that are there", droplet.id));
+    before = droplet.id;
+    bool finite = droplet.centroid.allFinite() && droplet.velocity.allFinite() && droplet.lower.allFinite() &&
+                  droplet.upper.allFinite();
+    for (const Eigen::Vector2f& corner : droplet.footprint) finite = finite && corner.allFinite();
+    if (!finite) throw InvalidInput(fmt::format("saved state: droplet {} is at no number", droplet.id));
+  }
 }
 
 }  // namespace dmf::engine

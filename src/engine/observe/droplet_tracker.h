@@ -35,11 +35,16 @@ class DropletTracker {
   std::uint32_t droplet_of(std::uint32_t bead_id) const {
     return bead_id < droplet_of_bead_.size() ? droplet_of_bead_[bead_id] : 0;
   }
+  /// Beads with ids below this were in a droplet at some look, but for vapour among them.
+  std::size_t known_beads() const { return droplet_of_bead_.size(); }
   std::vector<DropletEvent> take_events() { return std::exchange(events_, {}); }
 
+  /// @throws InvalidInput when what is read can't be a tracker's.
   void archive(Archive& archive);
 
  private:
+  void require_sound() const;
+
   struct Component {
     std::vector<std::uint32_t> beads;                 ///< indices
     std::vector<Eigen::Vector3f> positions;           ///< unwrapped: continuous across periodic sides

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +36,10 @@ class CheckpointFileTest : public ::testing::Test {
     checkpoint.step = 123;
     checkpoint.time = 1.23;
     checkpoint.state_hash = 0xfedcba9876543210u;
+    checkpoint.scene_hash = 0x8000000000000001u;
+    checkpoint.ros_time = 1'234'567'891;
+    checkpoint.run = 4;
+    checkpoint.paused = true;
     checkpoint.state = std::string("zero \0 newline \n crc64 \xff", 23);
     return checkpoint;
   }
@@ -66,6 +72,11 @@ TEST_F(CheckpointFileTest, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.step, example().step);
   EXPECT_EQ(back.time, example().time);
   EXPECT_EQ(back.state_hash, example().state_hash);
+  EXPECT_EQ(back.scene_hash, example().scene_hash);
+  EXPECT_EQ(back.ros_time, example().ros_time);
+  EXPECT_EQ(back.run, example().run);
+  EXPECT_EQ(back.paused, example().paused);
+  EXPECT_NE(back.package_version, "");
   EXPECT_EQ(back.state, example().state);
 }
 
@@ -104,9 +115,9 @@ TEST_F(CheckpointFileTest, NamesTheVersionThatItCannotRead) {
   folder_.write("first", example());
   const fs::path file = folder_.path() / "first";
   std::string data = contents(file);
-  data[data.find('1')] = '9';
+  data[data.find('2')] = '1';
   replace(file, data);
-  EXPECT_NE(refusal("first").find("version 9, allowed: 1"), std::string::npos) << refusal("first");
+  EXPECT_NE(refusal("first").find("version 1, allowed: 2"), std::string::npos) << refusal("first");
 }
 
 TEST_F(CheckpointFileTest, RefusesEveryNameThatIsNotBare) {
@@ -140,6 +151,32 @@ TEST_F(CheckpointFileTest, SaysWhichCheckpointsThereAre) {
   EXPECT_NE(refusal("first").find("no checkpoint yet"), std::string::npos) << refusal("first");
   folder_.write("second", example());
   EXPECT_NE(refusal("first").find("allowed: second"), std::string::npos) << refusal("first");
+}
+
+TEST_F(CheckpointFileTest, AFullDiskIsReportedAndLeavesTheOldFileAndNothingElse) {
+  folder_.write("first", example());
+  Checkpoint larger = example();
+  larger.state = std::string(1 << 20, 'x');
+  // No file may be longer than this: writing fails half way, as on a full disk.
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  struct rlimit small = before;
+  small.rlim_cur = 1 << 16;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  std::string problem;
+  try {
+    folder_.write("first", larger);
+  } catch (const std::runtime_error& error) {
+    problem = error.what();
+  }
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(problem.find("can't write"), std::string::npos) << problem;
+  EXPECT_EQ(folder_.read("first").state, example().state);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
+  folder_.write("first", larger);
+  EXPECT_EQ(folder_.read("first").state, larger.state);
 }
 
 TEST_F(CheckpointFileTest, ReportsADiskThatRefuses) {

@@ -1,0 +1,185 @@
+#include "chip/scene_hash.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "engine/noise.h"
+
+namespace dmf::chip {
+namespace {
+
+/// Folds values into a hash, in the order in which they are given.
+class Digest {
+ public:
+  template <class... Values>
+  Digest& operator()(const Values&... values) {
+    (add(values), ...);
+    return *this;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  void word(std::uint64_t bits) { hash_ = engine::mix64(hash_ ^ bits) + 1; }
+
+  template <class T>
+  std::enable_if_t<std::is_integral_v<T> || std::is_enum_v<T>> add(const T& value) {
+    word(static_cast<std::uint64_t>(value));
+  }
+  void add(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    word(bits);
+  }
+  void add(const std::string& text) {
+    word(text.size());
+    for (const char c : text) word(static_cast<unsigned char>(c));
+  }
+  template <class T, int rows>
+  void add(const Eigen::Matrix<T, rows, 1>& vector) {
+    for (const T component : vector) add(component);
+  }
+  template <class T, std::size_t size>
+  void add(const std::array<T, size>& values) {
+    for (const T& value : values) add(value);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    word(values.size());
+    for (const T& value : values) add(value);
+  }
+  template <class T>
+  void add(const std::optional<T>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+  void add(const ScheduledCommand& scheduled) {
+    add(scheduled.time);
+    add(to_json(scheduled.command));
+  }
+  void add(const engine::ContactAngleCurve& curve) {
+    for (const auto& point : curve.points()) (*this)(point.attraction, point.angle);
+  }
+  void add(const Electrode& electrode) { (*this)(electrode.channel, electrode.outline); }
+  void add(const engine::DropletPlacement& droplet) { (*this)(droplet.center, droplet.radius); }
+  // Structured bindings name every member: what is added to one of these does not compile before somebody has
+  // said here whether it counts.
+  void add(const engine::MicroparticlePlacement& placement) {
+    const auto& [center, z, radius, beads, smooth, points, mass, attraction, static_friction,
+                 kinetic_friction, rolling_friction, magnetic] = placement;
+    (*this)(center, z, radius, beads, smooth, points, mass, attraction, static_friction, kinetic_friction,
+            rolling_friction, magnetic);
+  }
+  void add(const engine::LiquidParameters& liquid) {
+    const auto& [attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude, temperature,
+                 initial_density, bulk_density, surface_tension, viscosity, wall_distance] = liquid;
+    (*this)(attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude, temperature,
+            initial_density, bulk_density, surface_tension, viscosity, wall_distance);
+  }
+  void add(const engine::WallParameters& wall) {
+    const auto& [lattice_constant, layers, top_contact_angle] = wall;
+    (*this)(lattice_constant, layers, top_contact_angle);
+  }
+  void add(const engine::MicroparticleParameters& model) {
+    const auto& [contact, elastic_modulus, contact_damping, wall_attraction, liquid_repulsion,
+                 particle_adhesion, counts_own_beads, counts_liquid, counted_by_liquid] = model;
+    (*this)(contact, elastic_modulus, contact_damping, wall_attraction, liquid_repulsion, particle_adhesion,
+            counts_own_beads, counts_liquid, counted_by_liquid);
+  }
+  void add(const engine::Domain& domain) {
+    const auto& [lower, upper, lower_side, upper_side] = domain;
+    (*this)(lower, upper, lower_side, upper_side);
+  }
+  void add(const Units& units) {
+    const auto& [length_m, mass_kg, time_s] = units;
+    (*this)(length_m, mass_kg, time_s);
+  }
+  void add(const Electrowetting& law) {
+    const auto& [rest_angle, reference_voltage, reference_angle, saturation_angle, max_voltage,
+                 threshold_voltage, cutoff_frequency, breakdown_voltage, charging_time] = law;
+    (*this)(rest_angle, reference_voltage, reference_angle, saturation_angle, max_voltage, threshold_voltage,
+            cutoff_frequency, breakdown_voltage, charging_time);
+  }
+  void add(const Rail& rail) {
+    const auto& [current_limit] = rail;
+    (*this)(current_limit);
+  }
+  void add(const Sensing& sensing) {
+    const auto& [interval, noise, offset, filler_permittivity] = sensing;
+    (*this)(interval, noise, offset, filler_permittivity);
+  }
+  void add(const engine::BodyForces& forces) {
+    const auto& [gravity, magnetic] = forces;
+    (*this)(gravity, magnetic);
+  }
+
+  std::uint64_t hash_ = 0x646d665f73696d00u;
+};
+
+template <class... Values>
+std::uint64_t digest(const Values&... values) {
+  return Digest()(values...).value();
+}
+
+/// It is read when a contact angle is asked for: a scene without it runs, too.
+std::uint64_t digest_of_microparticle_curve(const Scene& scene) {
+  try {
+    return digest(load_microparticle_curve(scene));
+  } catch (const engine::InvalidInput&) {
+    return digest(scene.microparticle_calibration);
+  }
+}
+
+}  // namespace
+
+SceneContent content_of(const Scene& scene) {
+  const auto& [name, description, source, parameters, units, calibration_file, electrowetting, rail, sensing,
+               board, layout, program, default_duration, settle_time, droplets, microparticle_calibration,
+               microparticles, body_forces, schedule, patterns] = scene;
+  const auto& [liquid, wall, microparticle_model, domain, time_step, integrator, integrator_lambda, list_skin,
+               seed, observe_interval, angle_window, max_beads] = parameters;
+  SceneContent content;
+  content["liquid"] = digest(liquid);
+  content["wall"] = digest(wall);
+  content["microparticle_model"] = digest(microparticle_model, digest_of_microparticle_curve(scene));
+  content["domain"] = digest(domain);
+  content["engine"] =
+      digest(time_step, integrator, integrator_lambda, list_skin, observe_interval, angle_window);
+  content["units"] = digest(units);
+  content["wettability"] = digest(load_curve(scene));
+  if (program) content["wettability"] = digest(content["wettability"], to_json(*program));
+  content["electrowetting"] = digest(electrowetting);
+  content["chip"] = digest(layout.electrodes(), layout.gap(), rail, sensing);
+  content["settle_time"] = digest(settle_time);
+  content["droplets"] = digest(droplets);
+  content["microparticles"] = digest(microparticles);
+  content["body_forces"] = digest(body_forces);
+  content["schedule"] = digest(schedule);
+  Digest of_patterns;
+  for (const auto& [pattern, commands] : patterns) of_patterns(pattern, commands);
+  content["patterns"] = of_patterns.value();
+  return content;
+}
+
+std::uint64_t hash_of(const SceneContent& content) {
+  Digest all;
+  for (const auto& [part, hash] : content) all(part, hash);
+  return all.value() != 0 ? all.value() : 1;
+}
+
+std::string differing_parts(const SceneContent& one, const SceneContent& other) {
+  std::vector<std::string> parts;
+  for (const auto& [part, hash] : one) {
+    const auto found = other.find(part);
+    if (found == other.end() || found->second != hash) parts.push_back(part);
+  }
+  for (const auto& [part, hash] : other)
+    if (one.count(part) == 0) parts.push_back(part);
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace dmf::chip

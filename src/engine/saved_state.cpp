@@ -1,0 +1,53 @@
+#include "engine/saved_state.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace dmf::engine {
+namespace {
+
+/// How far a bead may be beyond a periodic side before it is wrapped, and a rounding error, r_c.
+constexpr double bead_margin = 1.0;
+
+bool finite(const Record& record) {
+  return std::isfinite(record.x) && std::isfinite(record.y) && std::isfinite(record.z);
+}
+
+}  // namespace
+
+void require_inside(const Record& place, double margin, const Domain& domain) {
+  const double at[3] = {place.x, place.y, place.z};
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(at[axis] >= domain.lower[axis] - margin && at[axis] <= domain.upper[axis] + margin))
+      throw InvalidInput(fmt::format("saved state: a bead at ({:.6g}, {:.6g}, {:.6g}), allowed: the domain",
+                                     at[0], at[1], at[2]));
+}
+
+void require_sound(const Beads& beads, std::uint32_t next_bead_id, const DropletTracker& tracker,
+                   const Domain& domain) {
+  for (const AlignedVector<Record>* array :
+       {&beads.position, &beads.predicted, &beads.velocity, &beads.force, &beads.listed})
+    if (array->size() != beads.size()) throw InvalidInput("saved state: arrays of unequal length");
+
+  // Whoever was in a droplet at some look is known to the tracker; what was placed after them is still there.
+  if (tracker.known_beads() > next_bead_id || next_bead_id - tracker.known_beads() > beads.size())
+    throw InvalidInput(fmt::format("saved state: next bead {}, allowed: {} to {}", next_bead_id,
+                                   tracker.known_beads(), tracker.known_beads() + beads.size()));
+  std::vector<bool> taken(next_bead_id, false);
+  for (const std::uint32_t id : beads.id) {
+    if (id >= next_bead_id || taken[id])
+      throw InvalidInput(
+          fmt::format("saved state: bead {}, allowed: each id below {} once", id, next_bead_id));
+    taken[id] = true;
+  }
+  for (std::size_t i = 0; i < beads.size(); ++i) {
+    require_inside(beads.position[i], bead_margin, domain);
+    require_inside(beads.listed[i], bead_margin, domain);
+    if (!finite(beads.predicted[i]) || !finite(beads.velocity[i]) || !finite(beads.force[i]))
+      throw InvalidInput(fmt::format("saved state: bead {} moves to no number", beads.id[i]));
+  }
+}
+
+}  // namespace dmf::engine
