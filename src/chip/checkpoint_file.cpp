@@ -108,6 +108,16 @@ std::string read_all(int descriptor, std::size_t size, const std::string& file) 
   return data;
 }
 
+/// What lies at `name` in an open folder: nothing, a regular file, or something that must not be touched.
+enum class Entry { none, file, other };
+Entry entry(const File& folder, const std::string& name) {
+  struct stat status {};
+  if (::fstatat(folder.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return Entry::none;
+  return S_ISREG(status.st_mode) ? Entry::file : Entry::other;
+}
+
+}  // namespace
+
 std::string encode(const Checkpoint& checkpoint) {
   const nlohmann::json header = {{"scene", checkpoint.scene},
                                  {"seed", checkpoint.seed},
@@ -157,16 +167,6 @@ Checkpoint decode(const std::string& data, const std::string& name) {
   }
   return checkpoint;
 }
-
-/// What lies at `name` in an open folder: nothing, a regular file, or something that must not be touched.
-enum class Entry { none, file, other };
-Entry entry(const File& folder, const std::string& name) {
-  struct stat status {};
-  if (::fstatat(folder.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return Entry::none;
-  return S_ISREG(status.st_mode) ? Entry::file : Entry::other;
-}
-
-}  // namespace
 
 void CheckpointFolder::write(const std::string& name, const Checkpoint& checkpoint) const {
   check_name(name);

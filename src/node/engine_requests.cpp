@@ -66,6 +66,7 @@ Outcome EngineThread::pause() {
     end_advance(false, "ended by ~pause_physics");
     if (paused_) return {true, "was paused already", step};
     paused_ = true;
+    put_hash();
     note("paused", "");
     publish_soon();
     return {true, fmt::format("paused at step {}", step), step};
@@ -172,6 +173,8 @@ SavedRun EngineThread::save() {
     saved.seed = seed();
     saved.time = time_of(experiment_->steps());
     saved.hash = experiment_->observe(request)->state_hash.value_or(0);
+    saved.run = run_;
+    saved.stamp = clock_.nanoseconds(saved.time);
     saved.outcome.success = true;
     return saved;
   });
@@ -189,7 +192,7 @@ Outcome EngineThread::load(const std::string& state, const std::string& name) {
     end_advance(false, "ended by ~load_checkpoint");
     begin_run(old_time);
     note("checkpoint_loaded", name);
-    return {true, "", experiment_->steps()};
+    return {true, "", experiment_->steps(), run_, clock_.nanoseconds(time_of(experiment_->steps()))};
   });
 }
 

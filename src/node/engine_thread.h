@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "chip/experiment.h"
+#include "chip/hash_chain.h"
 #include "node/frame.h"
 #include "node/outbox.h"
 #include "node/rate_meter.h"
@@ -33,13 +34,16 @@ struct EngineSettings {
   double display_rate = 10;  ///< frames with beads per second while wanted, Hz, > 0
   double max_steps_per_second = 0;          ///< 0: as fast as it can
   double ros_seconds_per_time_unit = 0.02;  ///< ROS seconds per tau, > 0
+  std::uint32_t hash_interval = 500;        ///< steps between two hashes of the state; 0: none at all
 };
 
 /// Whether something was done, and the sentence for whoever asked.
 struct Outcome {
   bool success = false;
   std::string message;
-  std::uint64_t step = 0;  ///< steps of the run when it was answered
+  std::uint64_t step = 0;   ///< steps of the run when it was answered
+  std::uint32_t run = 0;    ///< number of the run that load() began
+  std::uint64_t stamp = 0;  ///< of its start, ROS time in ns
 };
 
 /// Why a droplet moves or does not.
@@ -55,6 +59,8 @@ struct SavedRun {
   std::uint64_t seed = 0;
   double time = 0;         ///< tau
   std::uint64_t hash = 0;  ///< of the state
+  std::uint32_t run = 0;
+  std::uint64_t stamp = 0;  ///< ROS time, ns
 };
 
 /// The thread that owns the experiment: takes requests between two steps, steps, and leaves frames in the
@@ -134,6 +140,9 @@ class EngineThread {
   void publish_if_due();
   void publish_soon() { next_frame_ = Clock::now(); }
   void put_capacitance();
+  void begin_chain();
+  /// Leaves a hash of the state now in the outbox, unless there is one of this moment.
+  void put_hash();
   std::shared_ptr<const Frame> make_frame(const engine::ObserveRequest& request);
   void collect_commands();
   void collect_scheduled();
@@ -152,7 +161,8 @@ class EngineThread {
   bool paused_;
   std::string fault_;
   std::optional<Advance> advance_;
-  std::size_t commands_seen_ = 0;  ///< how much of the history is in the outbox
+  std::size_t commands_seen_ = 0;         ///< how much of the history is in the outbox
+  std::optional<chip::HashChain> chain_;  ///< of the present run; none without hashes
   std::shared_ptr<const engine::Snapshot>
       last_snapshot_;  ///< shown after a fault: the state itself is garbage then
   Clock::time_point next_step_, next_frame_, next_display_;

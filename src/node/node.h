@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "chip/scene.h"
+#include "node/checkpoint_topic.h"
 #include "node/convert.h"
 #include "node/engine_thread.h"
 #include "node/options.h"
@@ -34,6 +35,7 @@ class Node {
   ros::NodeHandle private_handle_;
   EngineThread engine_;
   Publisher publisher_;
+  CheckpointTopic checkpoint_topic_;
   Services services_;
   ros::AsyncSpinner spinner_;
 };

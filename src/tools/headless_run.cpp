@@ -1,7 +1,6 @@
 #include "tools/headless_run.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -9,12 +8,12 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "chip/checkpoint_file.h"
+#include "tools/progress.h"
 
 namespace dmf::tools {
 namespace {
@@ -114,29 +113,6 @@ class Log {
   }
 
   Table droplets_, microparticles_;
-};
-
-/// A line that rewrites itself on a terminal, at most five times a second.
-class Progress {
- public:
-  Progress(std::uint64_t from, std::uint64_t to, bool quiet)
-      : from_(from), to_(to), shown_(!quiet && isatty(2)) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\n");
-  }
-  void show(std::uint64_t step) {
-    if (!shown_ || (seconds_since(last_) < 0.2 && step != to_)) return;
-    last_ = Clock::now();
-    const double rate = static_cast<double>(step - from_) / std::max(1e-9, seconds_since(start_));
-    fmt::print(stderr, "\r{} of {} steps, {:.0f} steps/s, {:.0f} s left   ", step, to_, rate,
-               static_cast<double>(to_ - step) / std::max(1.0, rate));
-    std::fflush(stderr);
-  }
-
- private:
-  std::uint64_t from_, to_;
-  bool shown_;
-  Clock::time_point start_ = Clock::now(), last_ = start_ - std::chrono::seconds(1);
 };
 
 void write_checkpoint(const std::string& folder, const chip::Experiment& experiment) {
