@@ -35,6 +35,7 @@ add_message_files(FILES
   Microparticle.msg
   MicroparticleArray.msg
   OperationLimits.msg
+  RunRecord.msg
   Scene.msg
   SceneFile.msg
   SensedDroplet.msg

@@ -3,14 +3,15 @@
 #include <dmf_sim/CheckpointFile.h>
 #include <dmf_sim/Command.h>
 #include <dmf_sim/Event.h>
+#include <dmf_sim/RunRecord.h>
 #include <dmf_sim/Scene.h>
-#include <dmf_sim/StateHash.h>
 #include <fmt/format.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <utility>
 
 #include "yaml/invalid_input.h"
@@ -29,13 +30,19 @@ std::uint64_t number_of(const std::string& hex) {
 }
 
 void open(rosbag::Bag& bag, const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw InvalidInput(fmt::format("{}: is no file", path));
+  const auto refuse = [&path](const char* why) {
+    throw InvalidInput(fmt::format("{}: {}, allowed: after `rosbag reindex {}`", path, why, path));
+  };
   try {
     bag.open(path, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
-    throw InvalidInput(
-        fmt::format("{}: was not closed or is cut off, allowed: after `rosbag reindex {}`", path, path));
-  } catch (const rosbag::BagException& error) {
-    throw InvalidInput(fmt::format("{}: {}", path, error.what()));
+    refuse("was not closed, its recorder was killed");
+  } catch (const rosbag::BagIOException&) {
+    refuse("is cut off");
+  } catch (const rosbag::BagException& problem) {
+    throw InvalidInput(fmt::format("{}: {}", path, problem.what()));
   }
 }
 
@@ -46,7 +53,7 @@ class Reader {
 
   std::vector<std::string> topics() const {
     std::vector<std::string> names;
-    for (const char* name : {"scene", "commands", "state_hash", "checkpoint", "events"})
+    for (const char* name : {"scene", "commands", "run_record", "checkpoint", "events"})
       names.push_back(chip_ + "/" + name);
     return names;
   }
@@ -56,12 +63,19 @@ class Reader {
     const std::string name = message.getTopic().substr(chip_.size() + 1);
     if (name == "scene") add(*instance<dmf_sim::Scene>(message));
     if (name == "commands") add(*instance<dmf_sim::Command>(message));
-    if (name == "state_hash") add(*instance<dmf_sim::StateHash>(message));
+    if (name == "run_record") add(*instance<dmf_sim::RunRecord>(message));
     if (name == "checkpoint") add(*instance<dmf_sim::CheckpointFile>(message));
     if (name == "events") events_.push_back(instance<dmf_sim::Event>(message));
   }
 
   void finish() {
+    // Those of ~run_record are the ones that the hash chain counts.
+    for (const auto& [run, message] : heard_) {
+      const RecordedCommand command{message.step, message.name, message.json};
+      const auto [there, fresh] = run->commands.emplace(message.index, command);
+      if (!fresh && (there->second.step != command.step || there->second.json != command.json))
+        run->told_twice.emplace(message.index, command);
+    }
     if (count_ == 0) {
       throw InvalidInput(fmt::format(
           "{}: holds nothing on {}, allowed: the bag of a chip (its node's name is set with --chip)",
@@ -120,18 +134,22 @@ class Reader {
   }
 
   void add(const dmf_sim::Command& message) {
-    run(message.session, message.run).commands[message.index] = {message.step, message.name, message.json};
+    heard_.emplace_back(&run(message.session, message.run), message);
   }
 
-  void add(const dmf_sim::StateHash& message) {
+  void add(const dmf_sim::RunRecord& message) {
     RecordedRun& found = run(message.session, message.run);
     found.seed = message.seed;
-    chip::StateRecord& record = found.hashes[message.index];
-    record.index = message.index;
-    record.step = message.step;
-    record.commands = message.commands;
-    record.hash = number_of(message.hash);
-    record.chain = number_of(message.chain);
+    for (const dmf_sim::Command& command : message.commands)
+      found.commands[command.index] = {command.step, command.name, command.json};
+    for (const dmf_sim::StateHash& hash : message.hashes) {
+      chip::StateRecord& record = found.hashes[hash.index];
+      record.index = hash.index;
+      record.step = hash.step;
+      record.commands = hash.commands;
+      record.hash = number_of(hash.hash);
+      record.chain = number_of(hash.chain);
+    }
   }
 
   void add(const dmf_sim::CheckpointFile& message) {
@@ -143,6 +161,7 @@ class Reader {
   std::string chip_;
   std::size_t count_ = 0;
   std::map<std::uint64_t, Session> sessions_;
+  std::vector<std::pair<RecordedRun*, dmf_sim::Command>> heard_;  ///< on ~commands
   std::vector<boost::shared_ptr<dmf_sim::Event>> events_;
 };
 

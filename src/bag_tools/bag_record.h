@@ -33,6 +33,8 @@ struct RecordedFault {
 struct RecordedRun {
   std::uint32_t number = 0;  ///< as the chip counted
   std::uint64_t seed = 0;
+  /// What ~commands says of commands that ~run_record tells otherwise, by place: one of both was altered.
+  std::map<std::uint32_t, RecordedCommand> told_twice;
   std::map<std::uint32_t, RecordedCommand> commands;             ///< by place in the run's history
   std::map<std::uint32_t, chip::StateRecord> hashes;             ///< by place among the run's hashes
   std::multimap<std::uint64_t, RecordedCheckpoint> checkpoints;  ///< by step

@@ -98,8 +98,13 @@ std::vector<std::string> problems(const Session& session, const RecordedRun& run
     found.push_back("the scene was altered: its texts are not those of its fingerprint");
   const std::string commands = missing_commands(run, run.commands_given());
   if (!commands.empty()) found.push_back(fmt::format("commands are missing: {}", commands));
+  for (const auto& [index, command] : run.told_twice) {
+    const RecordedCommand& other = run.commands.at(index);
+    found.push_back(fmt::format("the record was altered: command {} is {} at step {} and {} at step {}",
+                                index, other.json, other.step, command.json, command.step));
+  }
   if (run.hashes.empty()) {
-    found.push_back("there are no state hashes (~hash_interval was 0, or ~state_hash was not recorded)");
+    found.push_back("there are no state hashes (~hash_interval was 0, or ~run_record was not recorded)");
     return found;
   }
   const std::string hashes = missing(run.hashes, run.hashes.rbegin()->first + 1);

@@ -58,7 +58,7 @@ bool resimulate(const Session& session, const RecordedRun& run, const Arguments&
              verdict.end, verdict.wall_s,
              static_cast<double>(verdict.end - verdict.start) / std::max(1e-9, verdict.wall_s),
              verdict.kernel, verdict.threads);
-  return verdict.reproduced;
+  return verdict.reproduced && run.told_twice.empty();
 }
 
 /// The runs that were asked for. @throws InvalidInput when there are none.

@@ -157,7 +157,7 @@ Verdict resimulate(const Session& session, const RecordedRun& run, const Resimul
   if (session.version.empty()) throw InvalidInput("the bag lacks the scene (~scene was not recorded)");
   if (run.hashes.empty() || session.hash_interval == 0) {
     throw InvalidInput(
-        fmt::format("run {}: the bag holds no state hashes (~hash_interval was 0, or ~state_hash was not "
+        fmt::format("run {}: the bag holds no state hashes (~hash_interval was 0, or ~run_record was not "
                     "recorded), there is nothing to compare with",
                     run.number));
   }

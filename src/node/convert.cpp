@@ -214,18 +214,19 @@ dmf_sim::Scene to_scene(const Frame& frame, std::uint32_t hash_interval, const C
   return message;
 }
 
-dmf_sim::StateHash to_state_hash(const StateHashNote& note, const ConversionContext& context) {
-  dmf_sim::StateHash message;
+dmf_sim::RunRecord to_run_record(const StateHashNote& note, const ConversionContext& context) {
+  dmf_sim::RunRecord message;
   message.header.stamp = to_ros_time(note.stamp);
   message.header.frame_id = kChipFrame;
   message.session = context.session;
   message.run = note.run;
-  message.index = note.record.index;
   message.seed = note.seed;
-  message.step = note.record.step;
-  message.commands = note.record.commands;
-  message.hash = hash_text(note.record.hash);
-  message.chain = hash_text(note.record.chain);
+  dmf_sim::StateHash& hash = message.hashes.emplace_back();
+  hash.index = note.record.index;
+  hash.step = note.record.step;
+  hash.commands = note.record.commands;
+  hash.hash = hash_text(note.record.hash);
+  hash.chain = hash_text(note.record.chain);
   return message;
 }
 

@@ -11,8 +11,8 @@
 #include <dmf_sim/ExplainDroplet.h>
 #include <dmf_sim/Layout.h>
 #include <dmf_sim/MicroparticleArray.h>
+#include <dmf_sim/RunRecord.h>
 #include <dmf_sim/Scene.h>
-#include <dmf_sim/StateHash.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -65,7 +65,8 @@ dmf_sim::ExplainDroplet::Response to_response(const chip::DropletExplanation& ex
 dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context);
 /// What a run begins from. @param frame  any of the run.
 dmf_sim::Scene to_scene(const Frame& frame, std::uint32_t hash_interval, const ConversionContext& context);
-dmf_sim::StateHash to_state_hash(const StateHashNote& note, const ConversionContext& context);
+/// One hash, without commands.
+dmf_sim::RunRecord to_run_record(const StateHashNote& note, const ConversionContext& context);
 
 std::array<double, 3> to_array(const geometry_msgs::Vector3& vector);
 /// What is 0 and can't be, or says nothing, is left to its default.

@@ -34,7 +34,7 @@ struct EngineSettings {
   double display_rate = 10;  ///< frames with beads per second while wanted, Hz, > 0
   double max_steps_per_second = 0;          ///< 0: as fast as it can
   double ros_seconds_per_time_unit = 0.02;  ///< ROS seconds per tau, > 0
-  std::uint32_t hash_interval = 500;        ///< steps between two hashes of the state; 0: none at all
+  std::uint32_t hash_interval = 100;        ///< steps between two hashes of the state; 0: none at all
 };
 
 /// Whether something was done, and the sentence for whoever asked.

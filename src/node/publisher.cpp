@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <memory>
 
 #include "node/markers.h"
@@ -19,9 +18,6 @@ constexpr auto kPatience = std::chrono::milliseconds(200);    // in which new su
 constexpr auto kDiagnosticsPeriod = std::chrono::seconds(1);  // what diagnostic tools expect
 constexpr auto kChipMarkerPeriod = std::chrono::seconds(1);   // so that a bag can be entered anywhere
 constexpr std::uint32_t kStateQueue = 10, kDisplayQueue = 2, kRecordQueue = 10000;
-constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-constexpr std::size_t kKeptHashes = 10000;  // 1 MB; each stands for all before it
-constexpr std::uint32_t kHashQueue = 2 * kKeptHashes;
 
 bool same(const dmf_sim::ElectrodeArray& a, const dmf_sim::ElectrodeArray& b) {
   return a.hv_voltage == b.hv_voltage && a.hv_frequency == b.hv_frequency && a.hv_enabled == b.hv_enabled &&
@@ -45,8 +41,7 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
                      const ConversionContext& context, std::uint32_t hash_interval)
     : engine_(engine),
       context_(context),
-      commands_(private_handle, "commands", kRecordQueue, kAll),
-      hashes_(private_handle, "state_hash", kHashQueue, kKeptHashes),
+      run_record_(private_handle),
       clock_watch_(handle, [this](const std::string& other) { announce_clock(other); }) {
   clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kStateQueue);
   diagnostics_ = handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kStateQueue);
@@ -57,6 +52,9 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
   capacitance_ = private_handle.advertise<dmf_sim::Capacitance>("capacitance", kStateQueue);
   particles_ = private_handle.advertise<sensor_msgs::PointCloud2>("particles", kDisplayQueue);
   markers_ = private_handle.advertise<visualization_msgs::MarkerArray>("markers", kDisplayQueue);
+  commands_ = private_handle.advertise<dmf_sim::Command>(
+      "commands", kRecordQueue,
+      [this](const ros::SingleSubscriberPublisher& subscriber) { replay_commands(subscriber); });
   events_ = private_handle.advertise<dmf_sim::Event>("events", kRecordQueue);
   layout_ = private_handle.advertise<dmf_sim::Layout>("layout", 1, true);
 
@@ -87,8 +85,8 @@ void Publisher::loop() {
 void Publisher::publish(const Outbox::Delivery& delivery) {
   // The clock first: what follows then never lies in its subscribers' future.
   if (delivery.clock > 0) publish_clock(delivery.clock);
-  for (const CommandNote& command : delivery.commands) commands_.publish(to_command(command, context_));
-  for (const StateHashNote& hash : delivery.hashes) hashes_.publish(to_state_hash(hash, context_));
+  for (const CommandNote& command : delivery.commands) publish_command(command);
+  for (const StateHashNote& hash : delivery.hashes) run_record_.publish(to_run_record(hash, context_));
   for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));
   if (delivery.frame) publish_frame(*delivery.frame);
   if (delivery.capacitance) capacitance_.publish(to_capacitance(*delivery.capacitance, context_));
@@ -98,6 +96,20 @@ void Publisher::publish_clock(std::uint64_t nanoseconds) {
   rosgraph_msgs::Clock message;
   message.clock = to_ros_time(nanoseconds);
   clock_.publish(message);
+}
+
+void Publisher::publish_command(const CommandNote& note) {
+  const dmf_sim::Command message = to_command(note, context_);
+  run_record_.add(message);
+  const std::lock_guard lock(history_mutex_);
+  if (!history_.empty() && history_.back().run != message.run) history_.clear();
+  history_.push_back(message);
+  commands_.publish(message);
+}
+
+void Publisher::replay_commands(const ros::SingleSubscriberPublisher& subscriber) {
+  const std::lock_guard lock(history_mutex_);
+  for (const dmf_sim::Command& command : history_) subscriber.publish(command);
 }
 
 void Publisher::announce_clock(const std::string& other) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <set>
 #include <thread>
 #include <vector>
@@ -14,7 +15,7 @@
 #include "node/clock_watch.h"
 #include "node/convert.h"
 #include "node/engine_thread.h"
-#include "node/replayed_topic.h"
+#include "node/run_record_topic.h"
 
 namespace dmf::node {
 
@@ -38,22 +39,27 @@ class Publisher {
   void loop();
   void publish(const Outbox::Delivery& delivery);
   void publish_clock(std::uint64_t nanoseconds);
+  void publish_command(const CommandNote& note);
   void publish_frame(const Frame& frame);
   void publish_electrodes(const Frame& frame);
   void publish_transforms(const Frame& frame);
   void publish_markers(const Frame& frame);
   void publish_diagnostics(const Frame& frame);
+  /// Tells a new subscriber of ~commands the run so far.
+  void replay_commands(const ros::SingleSubscriberPublisher& subscriber);
   void announce_clock(const std::string& other);
 
   EngineThread& engine_;
   const ConversionContext& context_;
-  ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, events_,
-      layout_, scene_, diagnostics_, capacitance_;
-  ReplayedTopic<dmf_sim::Command> commands_;
-  ReplayedTopic<dmf_sim::StateHash> hashes_;
+  ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, commands_,
+      events_, layout_, scene_, diagnostics_, capacitance_;
+  RunRecordTopic run_record_;
   ClockWatch clock_watch_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
+
+  std::mutex history_mutex_;               ///< commands_ is published to, and history_ changed, under it
+  std::vector<dmf_sim::Command> history_;  ///< of the present run
 
   // Of the publisher thread.
   dmf_sim::ElectrodeArray last_electrodes_;
