@@ -22,6 +22,7 @@ find_package(catkin REQUIRED COMPONENTS
 
 add_message_files(FILES
   Capacitance.msg
+  CheckpointFile.msg
   ChipState.msg
   Command.msg
   Droplet.msg
@@ -34,8 +35,12 @@ add_message_files(FILES
   Microparticle.msg
   MicroparticleArray.msg
   OperationLimits.msg
+  RunRecord.msg
+  Scene.msg
+  SceneFile.msg
   SensedDroplet.msg
-  SensedDropletArray.msg)
+  SensedDropletArray.msg
+  StateHash.msg)
 
 add_action_files(FILES
   Dispense.action

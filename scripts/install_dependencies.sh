@@ -15,7 +15,7 @@ packages=(
 )
 ros=(
   # build
-  catkin ros-message-generation libroscpp-dev libtf2-ros-dev libactionlib-dev libactionlib-msgs-dev
+  catkin ros-message-generation libroscpp-dev libtf2-ros-dev libactionlib-dev libactionlib-msgs-dev librosbag-storage-dev
   libstd-msgs-dev libstd-srvs-dev libgeometry-msgs-dev libsensor-msgs-dev libvisualization-msgs-dev
   libdiagnostic-msgs-dev libros-rosgraph-msgs-dev
   ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-visualization-msgs ros-diagnostic-msgs

@@ -197,6 +197,10 @@ BoardFile parse_board_file(const std::string& text, const std::string& name,
 }
 
 BoardFile read_board_file(const std::string& file, const BoardFileOptions& options) {
+  return parse_board_file(board_text(file), file, options);
+}
+
+std::string board_text(const std::string& file) {
   std::error_code error;
   // A pipe or a device would never come to an end.
   if (!fs::is_regular_file(file, error)) throw engine::InvalidInput(fmt::format("{}: is no file", file));
@@ -209,7 +213,7 @@ BoardFile read_board_file(const std::string& file, const BoardFileOptions& optio
   if (!input.read(text.data(), static_cast<std::streamsize>(bytes))) {
     throw engine::InvalidInput(fmt::format("{}: can't be read", file));
   }
-  return parse_board_file(text, file, options);
+  return text;
 }
 
 std::vector<Electrode> electrodes_of(const BoardFile& board, double length_m, double gap) {

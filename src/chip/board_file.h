@@ -35,7 +35,10 @@ bool is_board_file(const std::string& file);
 /// overlap, no scale.
 BoardFile read_board_file(const std::string& file, const BoardFileOptions& options);
 
-/// Same from text, for tests; `name` stands for the file in messages and ends in .json or .svg.
+/// The text that read_board_file() reads. @throws engine::InvalidInput for a file that is none or over 4 MiB.
+std::string board_text(const std::string& file);
+
+/// Same from text; `name` stands for the file in messages and ends in .json or .svg.
 BoardFile parse_board_file(const std::string& text, const std::string& name, const BoardFileOptions& options);
 
 /// The electrodes in r_c, ready for a layout. Pads that the file draws nearer to each other are drawn in

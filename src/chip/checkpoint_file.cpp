@@ -114,6 +114,21 @@ std::string read_all(int descriptor, std::size_t size, const std::string& file) 
   return data;
 }
 
+bool is_temporary(const std::string& name) {
+  const std::size_t end = std::strlen(kTemporary);
+  return name.size() > end && name.compare(name.size() - end, end, kTemporary) == 0;
+}
+
+/// What lies at `name` in an open folder: nothing, a regular file, or something that must not be touched.
+enum class Entry { none, file, other };
+Entry entry(const File& folder, const std::string& name) {
+  struct stat status {};
+  if (::fstatat(folder.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return Entry::none;
+  return S_ISREG(status.st_mode) ? Entry::file : Entry::other;
+}
+
+}  // namespace
+
 std::string encode(const Checkpoint& checkpoint) {
   const nlohmann::json header = {{"package_version", DMF_VERSION},
                                  {"scene", checkpoint.scene},
@@ -179,21 +194,6 @@ Checkpoint decode(const std::string& data, const std::string& name) {
   }
   return checkpoint;
 }
-
-bool is_temporary(const std::string& name) {
-  const std::size_t end = std::strlen(kTemporary);
-  return name.size() > end && name.compare(name.size() - end, end, kTemporary) == 0;
-}
-
-/// What lies at `name` in an open folder: nothing, a regular file, or something that must not be touched.
-enum class Entry { none, file, other };
-Entry entry(const File& folder, const std::string& name) {
-  struct stat status {};
-  if (::fstatat(folder.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return Entry::none;
-  return S_ISREG(status.st_mode) ? Entry::file : Entry::other;
-}
-
-}  // namespace
 
 Checkpoint checkpoint_of(const Experiment& experiment) {
   const auto snapshot = experiment.observe({false, true});

@@ -27,6 +27,12 @@ struct Checkpoint {
 /// The run as it is now; what only a node knows is left for it.
 Checkpoint checkpoint_of(const Experiment& experiment);
 
+/// A checkpoint as the bytes of its file.
+std::string encode(const Checkpoint& checkpoint);
+/// And back. @param name  of the file, for messages. @throws engine::InvalidInput when the bytes are damaged,
+/// cut off, of another version or no checkpoint.
+Checkpoint decode(const std::string& data, const std::string& name);
+
 /// A folder of checkpoints that strangers may name files in: every name must be bare, and neither the
 /// folder's surroundings nor anything that a symbolic link points at can be reached through one.
 ///

@@ -83,14 +83,19 @@ void check_sequence(const WrittenSequence& sequence, const Scene& scene,
 }
 
 /// The map of a scene file: every section in the order in which one needs the other.
-Scene read_scene(YamlReader root, const std::string& source) {
+Scene read_scene(SceneFiles files) {
   Scene scene;
+  scene.files = std::move(files);
+  const SceneFile* own = scene.files.look_up(file_role::kScene);
+  if (!own) throw engine::InvalidInput("the record of the scene lacks the scene file itself");
+  const std::string source = own->path;
+  YamlReader root = YamlReader::parse(own->text, source);
   scene.source = source;
   scene.name = std::filesystem::path(source).stem().string();
   scene.description = root.text("description", "");
 
   scene.parameters.liquid = read_liquid(root);  // the units are matched with it
-  scene.board = read_board(root, source);       // and a board's size decides about one r_c
+  scene.board = read_board(root, scene);        // and a board's size decides about one r_c
   scene.units = read_units(root, scene.parameters.liquid, scene.board);
   root.set_units(scene.units);
   read_engine(root, scene.parameters, scene.board);
@@ -132,17 +137,26 @@ double surface_tension(const Scene& scene) {
 
 engine::ContactAngleCurve load_curve(const Scene& scene) {
   if (scene.calibration_file.empty()) return engine::ContactAngleCurve::lan2016();
+  // A study may have put another calibration in the place of the scene's own.
+  const SceneFile* own = scene.files.look_up(file_role::kCalibration);
+  if (own && own->path == scene.calibration_file)
+    return engine::ContactAngleCurve::parse(own->text, own->path);
   return engine::ContactAngleCurve::load(scene.calibration_file);
 }
 
 engine::ContactAngleCurve load_microparticle_curve(const Scene& scene) {
   if (scene.microparticle_calibration == kLanFormula) return engine::ContactAngleCurve::lan2016();
-  return engine::ContactAngleCurve::load(find_config("calibration", scene.microparticle_calibration));
+  const SceneFile file = scene.files.get(
+      file_role::kMicroparticleCalibration,
+      [&scene] { return find_config("calibration", scene.microparticle_calibration); }, YamlReader::text_of);
+  return engine::ContactAngleCurve::parse(file.text, file.path);
 }
 
 Scene load_scene(const std::string& file) {
-  const std::string path = find_config("scenes", file);
-  return read_scene(YamlReader::load(path), path);
+  SceneFiles files;
+  files.keep(
+      file_role::kScene, [&file] { return find_config("scenes", file); }, YamlReader::text_of);
+  return read_scene(std::move(files));
 }
 
 Scene load_board(const std::string& file, double resolution, const std::string& file_unit) {
@@ -158,11 +172,15 @@ Scene load_board(const std::string& file, double resolution, const std::string& 
   nlohmann::json chip{{"file", std::filesystem::exists(path, error) ? path.string() : file},
                       {"resolution", resolution}};
   if (!file_unit.empty()) chip["file_unit"] = file_unit;
-  return read_scene(YamlReader::parse(nlohmann::json{{"chip", chip}}.dump(), file), file);
+  return parse_scene(nlohmann::json{{"chip", chip}}.dump(), file);
 }
 
 Scene parse_scene(const std::string& yaml, const std::string& name) {
-  return read_scene(YamlReader::parse(yaml, name), name);
+  SceneFiles files;
+  files.add({file_role::kScene, name, yaml});
+  return read_scene(std::move(files));
 }
+
+Scene rebuild_scene(const std::vector<SceneFile>& files) { return read_scene(SceneFiles::recorded(files)); }
 
 }  // namespace dmf::chip

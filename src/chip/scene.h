@@ -8,6 +8,7 @@
 #include "chip/command.h"
 #include "chip/electrowetting.h"
 #include "chip/layout.h"
+#include "chip/scene_files.h"
 #include "engine/microparticle.h"
 #include "engine/parameters.h"
 #include "engine/simulation.h"
@@ -49,6 +50,7 @@ struct Scene {
   std::string name;
   std::string description;
   std::string source;  ///< file it was read from
+  SceneFiles files;    ///< all that it was read from: rebuild_scene(files.all()) gives it again
   engine::Parameters parameters;
   engine::Units units;
   std::string calibration_file;  ///< resolved path; empty means Lan's own fit
@@ -93,5 +95,9 @@ Scene load_board(const std::string& file, double resolution, const std::string& 
 
 /// A scene from text, for tests; `name` stands for the file in messages.
 Scene parse_scene(const std::string& yaml, const std::string& name);
+
+/// A scene from the texts that one was read from, and from nothing else. @throws engine::InvalidInput as
+/// load_scene, and when one is missing.
+Scene rebuild_scene(const std::vector<SceneFile>& files);
 
 }  // namespace dmf::chip

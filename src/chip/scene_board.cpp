@@ -44,7 +44,7 @@ std::string find_board(const std::string& name, const std::string& scene_file) {
 
 }  // namespace
 
-std::optional<SceneBoard> read_board(const YamlReader& root, const std::string& scene_file) {
+std::optional<SceneBoard> read_board(const YamlReader& root, Scene& scene) {
   if (!root.has("chip")) return std::nullopt;
   const YamlReader chip = root.mapping("chip");
   if (!chip.has("file")) return std::nullopt;
@@ -67,8 +67,10 @@ std::optional<SceneBoard> read_board(const YamlReader& root, const std::string& 
     return board;
   }
   attempt(chip, "file", [&] {
-    board.path = find_board(name, scene_file);
-    BoardFile file = read_board_file(board.path, options);
+    const SceneFile& text = scene.files.keep(
+        file_role::kBoard, [&] { return find_board(name, scene.source); }, board_text);
+    board.path = text.path;
+    BoardFile file = parse_board_file(text.text, text.path, options);
     const double length_m = file.pitch_m / board.resolution;
     if (!kLengths.contains(length_m)) {
       throw engine::InvalidInput(

@@ -309,7 +309,10 @@ std::optional<engine::ContactAngleCurve> read_wettability(const YamlReader& root
   scene.parameters.wall.top_contact_angle = top_angle.value_or(scene.electrowetting.rest_angle);
   std::optional<engine::ContactAngleCurve> curve;
   attempt(section.value_or(root), section ? "calibration" : "", [&] {
-    if (calibration != kLanFormula) scene.calibration_file = find_config("calibration", calibration);
+    if (calibration != kLanFormula) {
+      const auto find = [&] { return find_config("calibration", calibration); };
+      scene.calibration_file = scene.files.keep(file_role::kCalibration, find, YamlReader::text_of).path;
+    }
     curve = load_curve(scene);
   });
   return curve;
@@ -391,6 +394,13 @@ void read_microparticles(const YamlReader& root, Scene& scene) {
     scene.microparticle_calibration = model->text("calibration");
     sound = attempt(*model, "calibration", [&] { curve = load_microparticle_curve(scene); });
   }
+  if (scene.microparticle_calibration != kLanFormula) try {
+      // A command may ask for a contact angle later. Without the file only those that do are refused.
+      scene.files.keep(
+          file_role::kMicroparticleCalibration,
+          [&] { return find_config("calibration", scene.microparticle_calibration); }, YamlReader::text_of);
+    } catch (const engine::InvalidInput&) {
+    }
   for (const YamlReader& section : root.mappings("microparticles")) {
     const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
     WrittenMicroparticle written = read_microparticle(section);

@@ -28,9 +28,9 @@ bool attempt(const engine::YamlReader& reader, const std::string& key, const Act
 /// throw; docs/scene_format.md lists the keys. A section may use what the ones before it have read.
 
 engine::LiquidParameters read_liquid(const engine::YamlReader& root);
-/// `chip.file`: the board file that the scene names, if it does. @param scene_file  which a path counts from.
+/// `chip.file`: the board file that the scene names, if it does; a path counts from the scene's own file.
 /// After noting that it can't be had: a stand-in without electrodes.
-std::optional<SceneBoard> read_board(const engine::YamlReader& root, const std::string& scene_file);
+std::optional<SceneBoard> read_board(const engine::YamlReader& root, Scene& scene);
 /// `units`: by default those of water whose r_c is 10 um, or what the board's resolution makes of it.
 engine::Units read_units(const engine::YamlReader& root, const engine::LiquidParameters& liquid,
                          const std::optional<SceneBoard>& board);

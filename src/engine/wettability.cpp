@@ -30,7 +30,11 @@ ContactAngleCurve ContactAngleCurve::lan2016() {
 }
 
 ContactAngleCurve ContactAngleCurve::load(const std::string& file) {
-  const YamlReader reader = YamlReader::load(file);
+  return parse(YamlReader::text_of(file), file);
+}
+
+ContactAngleCurve ContactAngleCurve::parse(const std::string& text, const std::string& name) {
+  const YamlReader reader = YamlReader::parse(text, name);
   reader.text("description");
   reader.text("command");
   const auto rows = reader.rows("points", Dimension::number, {}, {2}, {3, 3});
@@ -40,7 +44,7 @@ ContactAngleCurve ContactAngleCurve::load(const std::string& file) {
   try {
     return ContactAngleCurve(std::move(points));
   } catch (const InvalidInput& problem) {
-    throw InvalidInput(fmt::format("{}: {}", file, problem.what()));
+    throw InvalidInput(fmt::format("{}: {}", name, problem.what()));
   }
 }
 

@@ -29,6 +29,8 @@ class ContactAngleCurve {
   /// Reads a calibration file: YAML with `points: [[attraction, angle, uncertainty], ...]`.
   /// @throws InvalidInput with file and line.
   static ContactAngleCurve load(const std::string& file);
+  /// Same from text; `name` stands for the file in messages.
+  static ContactAngleCurve parse(const std::string& text, const std::string& name);
 
   /// A_lw that shows `angle` degrees. @throws InvalidInput outside [min_angle, max_angle].
   double attraction(double angle) const;

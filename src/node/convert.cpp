@@ -169,6 +169,7 @@ dmf_sim::Command to_command(const CommandNote& command, const ConversionContext&
   dmf_sim::Command message;
   message.header.stamp = to_ros_time(command.stamp);
   message.header.frame_id = kChipFrame;
+  message.session = context.session;
   message.run = command.run;
   message.index = command.index;
   message.step = command.record.step;
@@ -190,6 +191,42 @@ dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context
   message.after = event.after;
   message.microparticle = event.microparticle;
   message.message = event.message;
+  return message;
+}
+
+dmf_sim::Scene to_scene(const Frame& frame, std::uint32_t hash_interval, const ConversionContext& context) {
+  dmf_sim::Scene message;
+  message.header.stamp = to_ros_time(frame.stamp);
+  message.header.frame_id = kChipFrame;
+  message.session = context.session;
+  message.name = context.scene.name;
+  message.version = DMF_SIM_VERSION;
+  message.seed = frame.seed;
+  message.kernel = frame.kernel;
+  message.hash_interval = hash_interval;
+  message.fingerprint = hash_text(chip::fingerprint(context.scene.files));
+  for (const chip::SceneFile& file : context.scene.files.all()) {
+    dmf_sim::SceneFile& copy = message.files.emplace_back();
+    copy.role = file.role;
+    copy.path = file.path;
+    copy.text = file.text;
+  }
+  return message;
+}
+
+dmf_sim::RunRecord to_run_record(const StateHashNote& note, const ConversionContext& context) {
+  dmf_sim::RunRecord message;
+  message.header.stamp = to_ros_time(note.stamp);
+  message.header.frame_id = kChipFrame;
+  message.session = context.session;
+  message.run = note.run;
+  message.seed = note.seed;
+  dmf_sim::StateHash& hash = message.hashes.emplace_back();
+  hash.index = note.record.index;
+  hash.step = note.record.step;
+  hash.commands = note.record.commands;
+  hash.hash = hash_text(note.record.hash);
+  hash.chain = hash_text(note.record.chain);
   return message;
 }
 

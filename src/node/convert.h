@@ -2,6 +2,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <dmf_sim/AddMicroparticle.h>
 #include <dmf_sim/Capacitance.h>
+#include <dmf_sim/CheckpointFile.h>
 #include <dmf_sim/ChipState.h>
 #include <dmf_sim/Command.h>
 #include <dmf_sim/DropletArray.h>
@@ -10,6 +11,8 @@
 #include <dmf_sim/ExplainDroplet.h>
 #include <dmf_sim/Layout.h>
 #include <dmf_sim/MicroparticleArray.h>
+#include <dmf_sim/RunRecord.h>
+#include <dmf_sim/Scene.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -32,6 +35,7 @@ struct ConversionContext {
   const chip::Scene& scene;
   double display_scale;              ///< metres on the screen per metre on the chip, > 0
   double ros_seconds_per_time_unit;  ///< ROS seconds per tau, > 0
+  std::uint64_t session = 0;         ///< ns of wall time at which the node began
 
   /// Metres on the screen per r_c.
   double display_length() const { return display_scale * scene.units.length_m; }
@@ -59,6 +63,10 @@ dmf_sim::Capacitance to_capacitance(const CapacitanceNote& note, const Conversio
 dmf_sim::ExplainDroplet::Response to_response(const chip::DropletExplanation& explanation,
                                               const ConversionContext& context);
 dmf_sim::Event to_event(const EventNote& event, const ConversionContext& context);
+/// What a run begins from. @param frame  any of the run.
+dmf_sim::Scene to_scene(const Frame& frame, std::uint32_t hash_interval, const ConversionContext& context);
+/// One hash, without commands.
+dmf_sim::RunRecord to_run_record(const StateHashNote& note, const ConversionContext& context);
 
 std::array<double, 3> to_array(const geometry_msgs::Vector3& vector);
 /// What is 0 and can't be, or says nothing, is left to its default.
@@ -81,5 +89,10 @@ std::vector<geometry_msgs::TransformStamped> electrode_transforms(const Conversi
 /// The engine's health (ERROR after a fault, WARN when the temperature is more than a tenth off) and the
 /// rail (ERROR while it is halted).
 diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const ConversionContext& context);
+/// What is wrong when these nodes publish /clock too.
+std::string clock_conflict(const std::vector<std::string>& others);
+/// ERROR while there are any.
+diagnostic_msgs::DiagnosticStatus clock_status(const std::vector<std::string>& others,
+                                               const ConversionContext& context);
 
 }  // namespace dmf::node

@@ -201,4 +201,21 @@ diagnostic_msgs::DiagnosticArray to_diagnostics(const Frame& frame, const Conver
   return array;
 }
 
+std::string clock_conflict(const std::vector<std::string>& others) {
+  return fmt::format("/clock is published by {} too and jumps for every node, allowed: one clock only",
+                     fmt::join(others, ", "));
+}
+
+diagnostic_msgs::DiagnosticStatus clock_status(const std::vector<std::string>& others,
+                                               const ConversionContext& context) {
+  using diagnostic_msgs::DiagnosticStatus;
+  DiagnosticStatus clock;
+  clock.name = "chip: clock";
+  clock.hardware_id = "dmf_sim " + context.scene.name;
+  clock.level = others.empty() ? DiagnosticStatus::OK : DiagnosticStatus::ERROR;
+  clock.message = others.empty() ? "the only one" : clock_conflict(others);
+  clock.values = {value("other publishers", fmt::format("{}", fmt::join(others, ", ")))};
+  return clock;
+}
+
 }  // namespace dmf::node

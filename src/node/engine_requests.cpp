@@ -66,6 +66,7 @@ Outcome EngineThread::pause() {
     end_advance(false, "ended by ~pause_physics");
     if (paused_) return {true, "was paused already", step};
     paused_ = true;
+    put_hash();
     note("paused", "");
     publish_soon();
     return {true, fmt::format("paused at step {}", step), step};
@@ -184,7 +185,7 @@ Outcome EngineThread::load(const std::string& state, const std::string& name) {
     end_advance(false, "ended by ~load_checkpoint");
     begin_run(old_time);
     note("checkpoint_loaded", name);
-    return {true, "", experiment_->steps()};
+    return {true, "", experiment_->steps(), run_, clock_.nanoseconds(time_of(experiment_->steps()))};
   });
 }
 

@@ -93,6 +93,7 @@ void EngineThread::loop() {
   saved_progress_ = progress();  // the scene's start, or a checkpoint: there already
   collect_commands();
   if (!settings_.resumed_from.empty()) note("checkpoint_loaded", settings_.resumed_from);
+  begin_chain();
   while (run_requests()) {
     if (moving()) {
       if (Clock::now() >= next_step_) {
@@ -137,6 +138,7 @@ void EngineThread::step() {
     return;
   }
   collect_scheduled();
+  if (chain_ && experiment_->steps() % settings_.hash_interval == 0) put_hash();
   if (settings_.max_steps_per_second > 0) {
     // A step that came late is not made up for: the limit holds from step to step.
     next_step_ = std::max(next_step_ + period(settings_.max_steps_per_second), Clock::now());
@@ -179,7 +181,27 @@ void EngineThread::begin_run(double old_time) {
   served_listeners_ = 0;
   next_checkpoint_ = Clock::now();  // who comes back shall not find the run that was left
   collect_commands();
+  begin_chain();
   publish_soon();
+}
+
+void EngineThread::begin_chain() {
+  if (settings_.hash_interval == 0) return;
+  chain_.emplace(chip::fingerprint(experiment_->scene().files), seed(), settings_.hash_interval);
+  put_hash();
+}
+
+void EngineThread::put_hash() {
+  if (!chain_ || !fault_.empty() || chain_->has(experiment_->steps(), experiment_->history().size())) return;
+  engine::ObserveRequest request;
+  request.hash = true;
+  const auto snapshot = experiment_->observe(request);
+  StateHashNote note;
+  note.stamp = clock_.nanoseconds(time_of(snapshot->step));
+  note.run = run_;
+  note.seed = seed();
+  note.record = chain_->add(snapshot->step, *snapshot->state_hash, experiment_->history());
+  outbox_.put(std::move(note));
 }
 
 void EngineThread::publish_if_due() {

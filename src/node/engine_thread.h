@@ -16,6 +16,7 @@
 #include "chip/checkpoint_file.h"
 #include "chip/checkpoint_writer.h"
 #include "chip/experiment.h"
+#include "chip/hash_chain.h"
 #include "node/frame.h"
 #include "node/outbox.h"
 #include "node/rate_meter.h"
@@ -41,13 +42,16 @@ struct EngineSettings {
   std::uint32_t first_run = 0;                 ///< run number of the first run
   std::uint64_t ros_start = RunClock::kStart;  ///< ns of ROS time at which it begins
   std::string resumed_from;                    ///< what it goes on from, for people; empty: the scene's start
+  std::uint32_t hash_interval = 100;        ///< steps between two hashes of the state; 0: none at all
 };
 
 /// Whether something was done, and the sentence for whoever asked.
 struct Outcome {
   bool success = false;
   std::string message;
-  std::uint64_t step = 0;  ///< steps of the run when it was answered
+  std::uint64_t step = 0;   ///< steps of the run when it was answered
+  std::uint32_t run = 0;    ///< number of the run that load() began
+  std::uint64_t stamp = 0;  ///< of its start, ROS time in ns
 };
 
 /// Why a droplet moves or does not.
@@ -144,6 +148,9 @@ class EngineThread {
   void publish_if_due();
   void publish_soon() { next_frame_ = Clock::now(); }
   void put_capacitance();
+  void begin_chain();
+  /// Leaves a hash of the state now in the outbox, unless there is one of this moment.
+  void put_hash();
   std::shared_ptr<const Frame> make_frame(const engine::ObserveRequest& request);
   void collect_commands();
   void collect_scheduled();
@@ -165,7 +172,8 @@ class EngineThread {
   bool paused_;
   std::string fault_;
   std::optional<Advance> advance_;
-  std::size_t commands_seen_ = 0;  ///< how much of the history is in the outbox
+  std::size_t commands_seen_ = 0;         ///< how much of the history is in the outbox
+  std::optional<chip::HashChain> chain_;  ///< of the present run; none without hashes
   std::shared_ptr<const engine::Snapshot>
       last_snapshot_;  ///< shown after a fault: the state itself is garbage then
   Clock::time_point next_step_, next_frame_, next_display_;

@@ -6,6 +6,7 @@
 
 #include "chip/command.h"
 #include "chip/experiment.h"
+#include "chip/hash_chain.h"
 #include "engine/observe/snapshot.h"
 
 namespace dmf::node {
@@ -51,6 +52,14 @@ struct CommandNote {
   std::uint32_t index = 0;  ///< place in the run's history
   double time = 0;          ///< tau
   chip::CommandRecord record;
+};
+
+/// A record of the run's state as the engine thread passes it on.
+struct StateHashNote {
+  std::uint64_t stamp = 0;  ///< ROS time, ns
+  std::uint32_t run = 0;
+  std::uint64_t seed = 0;
+  chip::StateRecord record;
 };
 
 /// What the board senses at one step.

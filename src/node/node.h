@@ -6,6 +6,7 @@
 
 #include "chip/checkpoint_writer.h"
 #include "chip/scene.h"
+#include "node/checkpoint_topic.h"
 #include "node/convert.h"
 #include "node/engine_thread.h"
 #include "node/master_memory.h"
@@ -43,6 +44,7 @@ class Node {
   chip::CheckpointWriter writer_;
   EngineThread engine_;
   Publisher publisher_;
+  CheckpointTopic checkpoint_topic_;
   Services services_;
   ros::AsyncSpinner spinner_;
 };

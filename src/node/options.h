@@ -17,7 +17,7 @@ struct Options {
   std::optional<std::uint64_t> seed;  ///< ~seed: in place of the scene's; a number, or text when beyond 2^31
   engine::Execution execution;        ///< ~threads (0 to 256, 0: all cores), ~kernel
   EngineSettings engine;              ///< ~paused, ~publish_rate, ~display_rate, ~max_steps_per_second,
-                                      ///< ~ros_seconds_per_time_unit, ~checkpoint_period
+                                      ///< ~ros_seconds_per_time_unit, ~checkpoint_period, ~hash_interval
   double display_scale = 1000;        ///< ~display_scale: metres on the screen per metre on the chip
   std::filesystem::path checkpoint_dir;  ///< ~checkpoint_dir; default: dmf_sim in $ROS_HOME or ~/.ros
   int checkpoint_keep = 3;               ///< ~checkpoint_keep: how many automatic checkpoints stay

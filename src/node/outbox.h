@@ -13,14 +13,15 @@
 namespace dmf::node {
 
 /// What the engine thread leaves for the publisher thread. The engine never waits here: a frame that was not
-/// taken yet is replaced by the newer one, and so are a reading and the clock. Commands and events are kept,
-/// in order, until taken.
+/// taken yet is replaced by the newer one, and so are a reading and the clock. Commands, events and state
+/// hashes are kept, in order, until taken.
 class Outbox {
  public:
   struct Delivery {
     std::shared_ptr<const Frame> frame;  ///< null when there is no new one
     std::vector<CommandNote> commands;
     std::vector<EventNote> events;
+    std::vector<StateHashNote> hashes;
     std::optional<CapacitanceNote> capacitance;  ///< newest that was not taken
     std::uint64_t clock = 0;                     ///< newest ROS time, ns; 0 when there is no news
   };
@@ -36,6 +37,9 @@ class Outbox {
   }
   void put(EventNote event) {
     change([&](Delivery& d) { d.events.push_back(std::move(event)); });
+  }
+  void put(StateHashNote hash) {
+    change([&](Delivery& d) { d.hashes.push_back(std::move(hash)); });
   }
   void put(CapacitanceNote reading) {
     change([&](Delivery& d) { d.capacitance = std::move(reading); });

@@ -38,8 +38,12 @@ std::set<std::uint32_t> take_gone(std::set<std::uint32_t>& drawn, const std::vec
 }  // namespace
 
 Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
-                     const ConversionContext& context, MasterMemory& memory)
-    : engine_(engine), context_(context), memory_(memory) {
+                     const ConversionContext& context, MasterMemory& memory, std::uint32_t hash_interval)
+    : engine_(engine),
+      context_(context),
+      memory_(memory),
+      run_record_(private_handle),
+      clock_watch_(handle, [this](const std::string& other) { announce_clock(other); }) {
   clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kStateQueue);
   diagnostics_ = handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kStateQueue);
   state_ = private_handle.advertise<dmf_sim::ChipState>("state", kStateQueue);
@@ -55,7 +59,10 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
   events_ = private_handle.advertise<dmf_sim::Event>("events", kRecordQueue);
   layout_ = private_handle.advertise<dmf_sim::Layout>("layout", 1, true);
 
+  scene_ = private_handle.advertise<dmf_sim::Scene>("scene", 1, true);
+
   layout_.publish(to_layout(context_));
+  scene_.publish(to_scene(*engine_.inspect(false), hash_interval, context_));
   static_transforms_.sendTransform(electrode_transforms(context_, to_ros_time(RunClock::kStart)));
   thread_ = std::thread([this] { loop(); });
 }
@@ -82,6 +89,7 @@ void Publisher::publish(const Outbox::Delivery& delivery) {
   // The clock first: what follows then never lies in its subscribers' future.
   if (delivery.clock > 0) publish_clock(delivery.clock);
   for (const CommandNote& command : delivery.commands) publish_command(command);
+  for (const StateHashNote& hash : delivery.hashes) run_record_.publish(to_run_record(hash, context_));
   for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));
   if (delivery.frame) publish_frame(*delivery.frame);
   if (delivery.capacitance) capacitance_.publish(to_capacitance(*delivery.capacitance, context_));
@@ -96,6 +104,7 @@ void Publisher::publish_clock(std::uint64_t nanoseconds) {
 
 void Publisher::publish_command(const CommandNote& note) {
   const dmf_sim::Command message = to_command(note, context_);
+  run_record_.add(message);
   const std::lock_guard lock(history_mutex_);
   if (!history_.empty() && history_.back().run != message.run) history_.clear();
   history_.push_back(message);
@@ -105,6 +114,14 @@ void Publisher::publish_command(const CommandNote& note) {
 void Publisher::replay_commands(const ros::SingleSubscriberPublisher& subscriber) {
   const std::lock_guard lock(history_mutex_);
   for (const dmf_sim::Command& command : history_) subscriber.publish(command);
+}
+
+void Publisher::announce_clock(const std::string& other) {
+  try {
+    engine_.announce(dmf_sim::Event::CLOCK_CONFLICT, clock_conflict({other}));
+  } catch (const EngineStopped&) {
+    // Nobody is left to be told.
+  }
 }
 
 void Publisher::publish_frame(const Frame& frame) {
@@ -162,7 +179,9 @@ void Publisher::publish_markers(const Frame& frame) {
 void Publisher::publish_diagnostics(const Frame& frame) {
   if (Clock::now() < next_diagnostics_) return;
   next_diagnostics_ = Clock::now() + kDiagnosticsPeriod;
-  diagnostics_.publish(to_diagnostics(frame, context_));
+  diagnostic_msgs::DiagnosticArray report = to_diagnostics(frame, context_);
+  report.status.push_back(clock_status(clock_watch_.others(), context_));
+  diagnostics_.publish(report);
 }
 
 }  // namespace dmf::node

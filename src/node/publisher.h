@@ -12,9 +12,11 @@
 #include <thread>
 #include <vector>
 
+#include "node/clock_watch.h"
 #include "node/convert.h"
 #include "node/engine_thread.h"
 #include "node/master_memory.h"
+#include "node/run_record_topic.h"
 
 namespace dmf::node {
 
@@ -23,8 +25,9 @@ namespace dmf::node {
 class Publisher {
  public:
   /// @param engine, context, memory  must outlive this.
+  /// @param hash_interval            of the engine thread's settings.
   Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, EngineThread& engine,
-            const ConversionContext& context, MasterMemory& memory);
+            const ConversionContext& context, MasterMemory& memory, std::uint32_t hash_interval);
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
@@ -45,12 +48,15 @@ class Publisher {
   void publish_diagnostics(const Frame& frame);
   /// Tells a new subscriber of ~commands the run so far.
   void replay_commands(const ros::SingleSubscriberPublisher& subscriber);
+  void announce_clock(const std::string& other);
 
   EngineThread& engine_;
   const ConversionContext& context_;
   MasterMemory& memory_;
   ros::Publisher clock_, state_, electrodes_, droplets_, microparticles_, particles_, markers_, commands_,
-      events_, layout_, diagnostics_, capacitance_;
+      events_, layout_, scene_, diagnostics_, capacitance_;
+  RunRecordTopic run_record_;
+  ClockWatch clock_watch_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 

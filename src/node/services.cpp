@@ -22,8 +22,8 @@ void copy(const chip::Reply& reply, Response& response) {
 // one; roscpp sends the text of an exception to the caller as the call's error.
 
 Services::Services(ros::NodeHandle& private_handle, EngineThread& engine, const ConversionContext& context,
-                   chip::CheckpointFolder checkpoints)
-    : engine_(engine), context_(context), checkpoints_(std::move(checkpoints)) {
+                   chip::CheckpointFolder checkpoints, CheckpointTopic& topic)
+    : engine_(engine), context_(context), checkpoints_(std::move(checkpoints)), topic_(topic) {
   const auto advertise = [&](const char* name, auto callback) {
     servers_.push_back(private_handle.advertiseService(name, callback, this));
   };
@@ -46,6 +46,7 @@ Services::Services(ros::NodeHandle& private_handle, EngineThread& engine, const 
   advertise("step", &Services::step);
   advertise("reset", &Services::reset);
   advertise("save_checkpoint", &Services::save_checkpoint);
+  advertise("record_checkpoint", &Services::record_checkpoint);
   advertise("load_checkpoint", &Services::load_checkpoint);
   advertise("get_layout", &Services::get_layout);
   advertise("get_state", &Services::get_state);
@@ -187,6 +188,7 @@ bool Services::save_checkpoint(dmf_sim::Checkpoint::Request& request,
   response.message = run.outcome.message;
   if (!run.outcome.success) return true;
   const chip::Checkpoint& checkpoint = run.checkpoint;
+  topic_.publish(checkpoint, checkpoint.run, checkpoint.ros_time, request.path);
   try {
     checkpoints_.write(request.path, checkpoint);  // on this thread: the engine does not wait for the disk
   } catch (const std::exception& error) {
@@ -198,6 +200,22 @@ bool Services::save_checkpoint(dmf_sim::Checkpoint::Request& request,
       fmt::format("step {}, state hash {}, in {}", checkpoint.step, hash_text(checkpoint.state_hash),
                   (checkpoints_.path() / request.path).string());
   engine_.announce(dmf_sim::Event::CHECKPOINT_SAVED, response.message);
+  return true;
+}
+
+bool Services::record_checkpoint(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  if (!topic_.wanted()) {
+    response.message = "nobody listens to ~checkpoint, allowed: while a recorder does";
+    return true;
+  }
+  const SavedRun run = engine_.save();
+  const chip::Checkpoint& checkpoint = run.checkpoint;
+  response.success = run.outcome.success;
+  response.message = run.outcome.message;
+  if (!run.outcome.success) return true;
+  response.message =
+      fmt::format("step {}, state hash {}", checkpoint.step, hash_text(checkpoint.state_hash));
+  topic_.publish(checkpoint, checkpoint.run, checkpoint.ros_time, "");
   return true;
 }
 
@@ -216,6 +234,7 @@ bool Services::load_checkpoint(dmf_sim::Checkpoint::Request& request,
     return true;
   }
   const Outcome outcome = engine_.load(checkpoint.state, request.path);
+  if (outcome.success) topic_.publish(checkpoint, outcome.run, outcome.stamp, request.path);
   response.success = outcome.success;
   response.message = outcome.success ? fmt::format("goes on from step {}, state hash {}", outcome.step,
                                                    hash_text(checkpoint.state_hash))

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "chip/checkpoint_file.h"
+#include "node/checkpoint_topic.h"
 #include "node/convert.h"
 #include "node/engine_thread.h"
 
@@ -33,9 +34,9 @@ namespace dmf::node {
 /// reply. Callbacks may run on several threads at once.
 class Services {
  public:
-  /// @param engine, context  must outlive this.
+  /// @param engine, context, topic  must outlive this.
   Services(ros::NodeHandle& private_handle, EngineThread& engine, const ConversionContext& context,
-           chip::CheckpointFolder checkpoints);
+           chip::CheckpointFolder checkpoints, CheckpointTopic& topic);
 
  private:
   bool set_electrodes(dmf_sim::SetElectrodes::Request& request, dmf_sim::SetElectrodes::Response& response);
@@ -63,6 +64,7 @@ class Services {
   bool step(dmf_sim::Step::Request& request, dmf_sim::Step::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool save_checkpoint(dmf_sim::Checkpoint::Request& request, dmf_sim::Checkpoint::Response& response);
+  bool record_checkpoint(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool load_checkpoint(dmf_sim::Checkpoint::Request& request, dmf_sim::Checkpoint::Response& response);
   bool get_layout(dmf_sim::GetLayout::Request& request, dmf_sim::GetLayout::Response& response);
   bool get_state(dmf_sim::GetState::Request& request, dmf_sim::GetState::Response& response);
@@ -70,6 +72,7 @@ class Services {
   EngineThread& engine_;
   const ConversionContext& context_;
   chip::CheckpointFolder checkpoints_;
+  CheckpointTopic& topic_;
   std::vector<ros::ServiceServer> servers_;
 };
 

@@ -1,7 +1,6 @@
 #include "tools/headless_run.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -15,6 +14,7 @@
 
 #include "chip/checkpoint_series.h"
 #include "chip/checkpoint_writer.h"
+#include "tools/progress.h"
 #include "tools/run_log.h"
 
 namespace dmf::tools {
@@ -25,29 +25,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// A line that rewrites itself on a terminal, at most five times a second.
-class Progress {
- public:
-  Progress(std::uint64_t from, std::uint64_t to, bool quiet)
-      : from_(from), to_(to), shown_(!quiet && isatty(2)) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\n");
-  }
-  void show(std::uint64_t step) {
-    if (!shown_ || (seconds_since(last_) < 0.2 && step != to_)) return;
-    last_ = Clock::now();
-    const double rate = static_cast<double>(step - from_) / std::max(1e-9, seconds_since(start_));
-    fmt::print(stderr, "\r{} of {} steps, {:.0f} steps/s, {:.0f} s left   ", step, to_, rate,
-               static_cast<double>(to_ - step) / std::max(1.0, rate));
-    std::fflush(stderr);
-  }
-
- private:
-  std::uint64_t from_, to_;
-  bool shown_;
-  Clock::time_point start_ = Clock::now(), last_ = start_ - std::chrono::seconds(1);
-};
 
 /// The checkpoints of a folder that dmf_run writes.
 chip::CheckpointSeries series_in(const std::string& folder, unsigned keep) {

@@ -253,13 +253,15 @@ class YamlReader::Internals {
 YamlReader::YamlReader(std::shared_ptr<Document> document, std::shared_ptr<Mapping> mapping)
     : document_(std::move(document)), mapping_(std::move(mapping)) {}
 
-YamlReader YamlReader::load(const std::string& file) {
+YamlReader YamlReader::load(const std::string& file) { return parse(text_of(file), file); }
+
+std::string YamlReader::text_of(const std::string& file) {
   std::ifstream input(file);
   std::ostringstream text;
   // Opening a directory succeeds, reading it does not.
   if (!input || !(text << input.rdbuf()))
     throw InvalidInput(fmt::format("{}: can't be read, or is empty", file));
-  return parse(text.str(), file);
+  return text.str();
 }
 
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {

@@ -48,6 +48,8 @@ class YamlReader {
  public:
   /// @throws InvalidInput when the file can't be read, is not YAML, or is not one mapping.
   static YamlReader load(const std::string& file);
+  /// The text that load() reads. @throws InvalidInput when the file can't be read.
+  static std::string text_of(const std::string& file);
   /// Same from text; `name` stands for the file in messages.
   static YamlReader parse(const std::string& text, const std::string& name);
 

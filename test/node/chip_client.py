@@ -26,6 +26,7 @@ SERVICES = {
     "step": srv.Step,
     "reset": Trigger,
     "save_checkpoint": srv.Checkpoint,
+    "record_checkpoint": Trigger,
     "load_checkpoint": srv.Checkpoint,
     "get_layout": srv.GetLayout,
     "get_state": srv.GetState,
