@@ -10,6 +10,9 @@
 #include "tools/explain.h"
 #include "tools/headless_run.h"
 
+/// Exit status of a run that the watchdog stopped; what was asked for wrongly ends with 1.
+constexpr int kStoppedByFault = 3;
+
 int main(int argc, char** argv) {
   using namespace dmf;
   engine::prefer_short_spinning(argv);
@@ -76,6 +79,9 @@ int main(int argc, char** argv) {
           "temperature {:.4f}\n",
           result.scene, result.beads, result.steps, result.time, result.wall_s, result.ns_per_bead_step,
           result.kernel, result.threads, result.temperature);
+  } catch (const engine::Instability& fault) {
+    fmt::print(stderr, "dmf_run: the run was stopped: {}\n", fault.what());
+    return kStoppedByFault;
   } catch (const std::exception& problem) {
     fmt::print(stderr, "dmf_run: {}\n", problem.what());
     return 1;

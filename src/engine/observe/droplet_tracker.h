@@ -35,6 +35,11 @@ class DropletTracker {
   std::uint32_t droplet_of(std::uint32_t bead_id) const {
     return bead_id < droplet_of_bead_.size() ? droplet_of_bead_[bead_id] : 0;
   }
+  /// The droplet that each bead of the vapour was last part of, or what that one has merged into; by bead id.
+  /// Beads that were placed as vapour, or whose droplet was taken off the chip, are left out.
+  const std::map<std::uint32_t, std::uint32_t>& evaporated_from() const { return evaporated_from_; }
+  /// A droplet is about to be taken off the chip: what evaporated from it before is nobody's loss.
+  void forget(std::uint32_t droplet);
   std::vector<DropletEvent> take_events() { return std::exchange(events_, {}); }
 
   void archive(Archive& archive);
@@ -55,7 +60,9 @@ class DropletTracker {
 
   std::vector<Component> connected_components(const Beads& beads,
                                               const std::vector<NeighbourBlock>& blocks) const;
-  void give_identities(std::uint64_t step, std::vector<Component>& components);
+  /// @returns for each droplet that has merged into another one: which.
+  std::map<std::uint32_t, std::uint32_t> give_identities(std::uint64_t step,
+                                                         std::vector<Component>& components);
   DropletObservation measure(const Component& component, const Beads& beads,
                              const std::vector<NeighbourBlock>& blocks, double elapsed);
   void measure_angles(DropletObservation& droplet, const Component& component, double elapsed);
@@ -65,8 +72,9 @@ class DropletTracker {
   std::uint64_t last_step_ = 0;
   std::uint32_t next_id_ = 1;
   std::size_t vapour_beads_ = 0;
-  std::vector<std::uint32_t> droplet_of_bead_;  ///< by bead id
-  std::map<std::uint32_t, Memory> memory_;      ///< by droplet id
+  std::vector<std::uint32_t> droplet_of_bead_;              ///< by bead id
+  std::map<std::uint32_t, std::uint32_t> evaporated_from_;  ///< droplet, by bead id
+  std::map<std::uint32_t, Memory> memory_;                  ///< by droplet id
   std::vector<DropletObservation> droplets_;
   std::vector<DropletEvent> events_;
 };
