@@ -22,7 +22,11 @@ constexpr std::size_t kMaxTold = 20;           // violations
 constexpr std::size_t kMaxEcho = 100;          // characters of what was written
 
 std::string echo(const std::string& text) {
-  return text.size() <= kMaxEcho ? text : text.substr(0, kMaxEcho) + "...";
+  if (text.size() <= kMaxEcho) return text;
+  std::size_t end = kMaxEcho;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    --end;  // not within a character of UTF-8
+  return text.substr(0, end) + "...";
 }
 
 /// A length in r_c as both readers of a message want it.

@@ -6,6 +6,7 @@
 
 #include "chip/scene.h"
 #include "engine/wait_policy.h"
+#include "node/memory_limit.h"
 #include "node/node.h"
 #include "node/options.h"
 
@@ -15,6 +16,9 @@ int main(int argc, char** argv) {
   try {
     const dmf::node::Options options = dmf::node::load_options(ros::NodeHandle("~"));
     const dmf::chip::Scene scene = dmf::chip::load_scene(options.scene);
+    // Beside the run: stacks and heaps of some twenty threads, queues, messages on their way.
+    constexpr double kBeside = 1000;  // MB
+    dmf::node::limit_memory(scene.parameters.max_memory + kBeside);
     const dmf::node::Node node(options, scene);
     ros::waitForShutdown();
   } catch (const std::exception& error) {

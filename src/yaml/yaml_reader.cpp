@@ -1,8 +1,6 @@
 #include "yaml/yaml_reader.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,9 +8,9 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <sstream>
 
 #include "yaml/invalid_input.h"
+#include "yaml/yaml_document.h"
 
 namespace dmf {
 
@@ -133,14 +131,13 @@ struct YamlReader::Mapping {
 /// What the getters share, kept out of the header so that it needs no yaml-cpp.
 class YamlReader::Internals {
  public:
-  static YamlReader read(std::istream& input, const std::string& name) {
+  static YamlReader read(const std::string& text, const std::string& name) {
     auto document = std::make_shared<Document>();
     document->name = name;
     try {
-      const std::vector<YAML::Node> parts = YAML::LoadAll(input);
-      if (parts.size() != 1 || !parts[0].IsMap())
-        document->refuse(1, "allowed: one mapping, `key: value` lines");
-      return open(document, parts[0], "");
+      const YAML::Node root = load_document(text);
+      if (!root.IsMap()) document->refuse(1, "allowed: one mapping, `key: value` lines");
+      return open(document, root, "");
     } catch (const YAML::Exception& error) {
       document->refuse(std::max(error.mark.line, 0) + 1, fmt::format("is not YAML: {}", error.msg));
     }
@@ -300,8 +297,7 @@ YamlReader YamlReader::load(const std::string& file) {
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   if (text.size() > kMaxBytes)
     throw InvalidInput(fmt::format("{}: {} bytes, allowed: up to {}", name, text.size(), kMaxBytes));
-  std::istringstream input(text);
-  return Internals::read(input, name);
+  return Internals::read(text, name);
 }
 
 void YamlReader::set_units(const Units& units) { document_->units = units; }
