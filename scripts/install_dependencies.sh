@@ -1,8 +1,9 @@
 #!/bin/bash
 # Installs the Debian packages that building, running and testing need, when any is missing.
-# usage: scripts/install_dependencies.sh [--rviz | --bench]
+# usage: scripts/install_dependencies.sh [--rviz | --bench | --clang]
 #   --rviz    RViz too
 #   --bench   what scripts/bench.sh needs and no more: nothing of ROS
+#   --clang   clang with its sanitizers and OpenMP too, for scripts/fuzz.sh and scripts/sanitize.sh
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -32,7 +33,8 @@ case "$*" in
   "") packages+=("${ros[@]}") ;;
   --rviz) packages+=("${ros[@]}" rviz) ;;
   --bench) packages+=(libbenchmark-dev) ;;
-  *) die "unknown options $*, allowed: --rviz or --bench" ;;
+  --clang) packages+=("${ros[@]}" clang libclang-rt-14-dev libomp-dev) ;;
+  *) die "unknown options $*, allowed: --rviz, --bench or --clang" ;;
 esac
 
 missing=()

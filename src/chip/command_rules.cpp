@@ -15,6 +15,20 @@ namespace {
 
 constexpr double kMaxFrequency = 100e3;  // Hz
 
+// What a command may hold, whoever sends it: more is refused with one sentence, not one for each.
+constexpr std::size_t kMaxPositions = 10'000;  // of a wettability program
+constexpr std::size_t kMaxPoints = 20'000;     // of a microparticle
+constexpr std::size_t kMaxTold = 20;           // violations
+constexpr std::size_t kMaxEcho = 100;          // characters of what was written
+
+std::string echo(const std::string& text) {
+  if (text.size() <= kMaxEcho) return text;
+  std::size_t end = kMaxEcho;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    --end;  // not within a character of UTF-8
+  return text.substr(0, end) + "...";
+}
+
 /// A length in r_c as both readers of a message want it.
 std::string length_text(double reduced, const engine::Units& units) {
   return fmt::format("{:.6g} mm ({:.6g} r_c)", reduced * units.length_m * 1e3, reduced);
@@ -38,12 +52,16 @@ class Rules {
     if (command.channels.empty()) note("channels: none given, allowed: one or more");
     check_lengths("channels", command.channels.size(), "voltages", command.voltages.size());
     check_channels(command.channels);
+    if (command.voltages.size() > scene_.layout.electrodes().size()) return;  // told by one of both
     for (const double voltage : command.voltages) check_voltage(voltage);
   }
 
   void operator()(const SetWettability& command) {
     if (command.positions.empty()) note("positions: none given, allowed: one or more");
     check_lengths("positions", command.positions.size(), "contact angles", command.contact_angles_deg.size());
+    const std::size_t longest = std::max(command.positions.size(), command.contact_angles_deg.size());
+    if (longest > kMaxPositions)
+      return note("positions: {} given, allowed: up to {}", longest, kMaxPositions);
     check_positions(command.positions);
     for (const double angle : command.contact_angles_deg) {
       if (!(angle >= curve_.min_angle() && angle <= curve_.max_angle())) {
@@ -58,9 +76,9 @@ class Rules {
     std::vector<std::string> names;
     for (const auto& [name, sequence] : scene_.patterns) names.push_back(name);
     if (names.empty()) {
-      note("pattern `{}` does not exist; this scene has no patterns", command.name);
+      note("pattern `{}` does not exist; this scene has no patterns", echo(command.name));
     } else {
-      note("pattern `{}` does not exist; patterns are {}", command.name, fmt::join(names, ", "));
+      note("pattern `{}` does not exist; patterns are {}", echo(command.name), fmt::join(names, ", "));
     }
   }
 
@@ -95,6 +113,8 @@ class Rules {
     if (command.beads > 0 && !command.points.empty()) {
       note("beads {} given together with points: allowed one of both", command.beads);
     }
+    if (command.points.size() > kMaxPoints)
+      return note("points: {} given, allowed: up to {}", command.points.size(), kMaxPoints);
     for (const Eigen::Vector3d& point : command.points) {
       if (!point.allFinite())
         note("points: ({}, {}, {}) m, allowed: finite", point.x(), point.y(), point.z());
@@ -130,7 +150,7 @@ class Rules {
   void operator()(const InjectFault& command) {
     const std::vector<std::string>& kinds = fault_kinds();
     if (std::find(kinds.begin(), kinds.end(), command.kind) == kinds.end()) {
-      note("kind `{}`: allowed {}", command.kind, fmt::join(kinds, ", "));
+      note("kind `{}`: allowed {}", echo(command.kind), fmt::join(kinds, ", "));
       return;
     }
     if (command.all && command.kind != fault::kClear) {
@@ -154,7 +174,7 @@ class Rules {
  private:
   template <typename... Arguments>
   void note(const char* text, const Arguments&... arguments) {
-    found_.push_back(fmt::format(fmt::runtime(text), arguments...));
+    if (found_.size() < kMaxTold) found_.push_back(fmt::format(fmt::runtime(text), arguments...));
   }
 
   void check_finite(const std::string& name, double value, const char* unit) {
@@ -162,8 +182,12 @@ class Rules {
   }
 
   void check_channels(const std::vector<std::uint32_t>& channels) {
+    const std::size_t there = scene_.layout.electrodes().size();
+    if (there > 0 && channels.size() > there)
+      return note("channels: {} given, allowed: up to {}, each once", channels.size(), there);
     std::set<std::uint32_t> seen;
     for (const std::uint32_t channel : channels) {
+      if (found_.size() >= kMaxTold) return;
       if (!seen.insert(channel).second) note("channels: {} given twice", channel);
       try {
         scene_.layout.index_of(channel);

@@ -118,6 +118,13 @@ Experiment::Experiment(const Scene& scene, const engine::Execution& execution,
 Experiment::~Experiment() = default;
 
 Reply Experiment::apply(const Command& command) {
+  if (history().size() >= kMaxHistory && !std::holds_alternative<Reset>(command)) {
+    Reply refused;
+    refused.step = steps();
+    refused.message = fmt::format("the run has had {} commands, allowed: up to {}, then reset",
+                                  history().size(), kMaxHistory);
+    return refused;
+  }
   Reply reply = state_->apply(command);
   if (reply.success) state_->run->history.push_back({reply.step, command});
   return reply;

@@ -42,6 +42,9 @@ struct ScheduledReply {
 /// engine. A command is refused whole or takes effect before the next step, and is then in history().
 class Experiment {
  public:
+  /// Commands that a run keeps; more are refused until a reset. docs/ros_api.md says what each takes.
+  static constexpr std::size_t kMaxHistory = 1'000'000;
+
   /// Builds the engine and places the scene's droplets and microparticles. `seed` replaces the scene's.
   /// @throws engine::InvalidInput.
   Experiment(const Scene& scene, const engine::Execution& execution, std::optional<std::uint64_t> seed = {});

@@ -26,6 +26,9 @@ Reply Experiment::State::apply(const Command& command) {
       if (std::holds_alternative<AddMicroparticle>(command)) reply.microparticle = run->newest_microparticle;
     } catch (const engine::InvalidInput& refusal) {
       reply.message = refusal.what();
+    } catch (const engine::Instability& instability) {
+      run->fault = instability.what();
+      reply.message = fmt::format("the run has stopped, allowed: reset. It stopped because: {}", run->fault);
     }
   }
   return reply;

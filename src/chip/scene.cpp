@@ -20,6 +20,8 @@ using engine::YamlReader;
 
 namespace {
 
+constexpr std::size_t kMaxScheduled = 10'000;  // commands of a schedule, and of a pattern
+
 /// A command as it stands in the file, kept until everything that it may name has been read.
 struct WrittenCommand {
   YamlReader entry;
@@ -31,7 +33,7 @@ using WrittenSequence = std::vector<WrittenCommand>;
 WrittenSequence read_sequence(const YamlReader& parent, const std::string& key, const engine::Units& units,
                               const std::vector<std::string>& allowed) {
   WrittenSequence sequence;
-  for (const YamlReader& entry : parent.mappings(key)) {
+  for (const YamlReader& entry : parent.mappings(key, {0, kMaxScheduled})) {
     const double time = entry.quantity("at", Dimension::time, Range::at_least(0));
     std::vector<std::string> given;
     for (const std::string& name : allowed) {

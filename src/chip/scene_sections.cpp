@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "chip/board_drawing.h"
 #include "chip/capacitance.h"
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
@@ -28,6 +29,8 @@ constexpr const char* kDefaultMicroparticleCalibration = "microparticle";
 constexpr std::uint64_t kMaxPerSide = 1000;       // columns, rows
 constexpr std::uint64_t kMaxChannel = 1'000'000;  // of a grid's first electrode and of a polygon
 constexpr double kMaxPermittivity = 1e5;
+constexpr std::size_t kMaxElectrodes = 10'000;  // of a scene; docs/scene_format.md says what they take
+constexpr std::size_t kMaxPlaced = 10'000;      // droplets, and microparticles
 
 // Of the capacitance of a pad that liquid covers: what the sensing of a good board is off by.
 constexpr double kNoiseShare = 0.005;
@@ -71,6 +74,22 @@ Domain read_domain(const YamlReader& root, const std::optional<SceneBoard>& boar
   return domain;
 }
 
+engine::WatchdogParameters read_watchdog(const YamlReader& root) {
+  engine::WatchdogParameters watchdog;
+  const auto section = root.optional_mapping("watchdog");
+  if (!section) return watchdog;
+  if (section->has("temperature")) {
+    const auto band = section->quantities("temperature", Dimension::number, {}, {2, 2});
+    if (band.size() == 2) {
+      watchdog.lowest_temperature = band[0];
+      watchdog.highest_temperature = band[1];
+    }
+  }
+  watchdog.evaporation = section->number("evaporation", {}, watchdog.evaporation);
+  watchdog.leak = static_cast<std::uint32_t>(section->integer("leak", 0, kAnyInteger, watchdog.leak));
+  return watchdog;
+}
+
 engine::MicroparticleParameters read_microparticle_model(const YamlReader& root) {
   engine::MicroparticleParameters model;
   const auto section = root.optional_mapping("microparticle_model");
@@ -100,6 +119,11 @@ bool read_grid(const YamlReader& section, double gap, std::vector<Electrode>& el
   for (const auto& hole : section.integer_rows("holes", 0, kMaxPerSide, {}, {2, 2})) {
     grid.holes.push_back({static_cast<std::uint32_t>(hole[0]), static_cast<std::uint32_t>(hole[1])});
   }
+  if (const std::uint64_t count = std::uint64_t{grid.columns} * grid.rows; count > kMaxElectrodes) {
+    section.report("columns", fmt::format("{} x {} = {} electrodes, allowed: up to {}", grid.columns,
+                                          grid.rows, count, kMaxElectrodes));
+    return false;
+  }
   return attempt(section, "", [&] {
     const auto more = electrodes_of(grid, gap);
     electrodes.insert(electrodes.end(), more.begin(), more.end());
@@ -109,7 +133,7 @@ bool read_grid(const YamlReader& section, double gap, std::vector<Electrode>& el
 Electrode read_polygon(const YamlReader& section) {
   Electrode electrode;
   electrode.channel = static_cast<std::uint32_t>(section.integer("channel", 0, kMaxChannel));
-  for (const auto& corner : section.rows("outline", Dimension::length, {}, {3}, {2, 2})) {
+  for (const auto& corner : section.rows("outline", Dimension::length, {}, {3, kMaxCorners}, {2, 2})) {
     electrode.outline.emplace_back(corner[0], corner[1]);
   }
   return electrode;
@@ -285,6 +309,8 @@ void read_engine(const YamlReader& root, engine::Parameters& parameters,
       root.integer("observe_interval", 0, kAnyInteger, parameters.observe_interval));
   parameters.angle_window = root.quantity("angle_window", Dimension::time, {}, parameters.angle_window);
   parameters.max_beads = root.integer("max_beads", 0, kAnyInteger, parameters.max_beads);
+  parameters.max_memory = root.number("max_memory", {}, parameters.max_memory);
+  parameters.watchdog = read_watchdog(root);
   for (const std::string& violation : engine::violations(parameters)) root.report_path(violation);
 }
 
@@ -344,6 +370,10 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   }
   for (const YamlReader& grid : chip->mappings("grids")) sound &= read_grid(grid, gap, electrodes);
   for (const YamlReader& polygon : chip->mappings("polygons")) electrodes.push_back(read_polygon(polygon));
+  if (electrodes.size() > kMaxElectrodes) {
+    chip->report("", fmt::format("{} electrodes, allowed: up to {}", electrodes.size(), kMaxElectrodes));
+    return false;
+  }
   if (electrodes.empty() && sound) {
     chip->report("", "no electrodes, allowed: one or more under `grids` or `polygons`");
     return false;
@@ -358,7 +388,7 @@ bool read_chip(const YamlReader& root, Scene& scene) {
 
 void read_droplets(const YamlReader& root, Scene& scene) {
   const Domain& domain = scene.parameters.domain;
-  for (const YamlReader& section : root.mappings("droplets")) {
+  for (const YamlReader& section : root.mappings("droplets", {0, kMaxPlaced})) {
     const auto centre = read_droplet_centre(section, scene);
     const bool fills = section.has("fills");
     if (fills && (section.has("radius") || section.has("volume")))
@@ -401,7 +431,7 @@ void read_microparticles(const YamlReader& root, Scene& scene) {
           [&] { return find_config("calibration", scene.microparticle_calibration); }, YamlReader::text_of);
     } catch (const engine::InvalidInput&) {
     }
-  for (const YamlReader& section : root.mappings("microparticles")) {
+  for (const YamlReader& section : root.mappings("microparticles", {0, kMaxPlaced})) {
     const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
     WrittenMicroparticle written = read_microparticle(section);
     if (written.contact_angle && sound) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/memory.h"
+
 namespace dmf::engine {
 namespace {
 
@@ -62,6 +64,14 @@ void check_microparticles(const MicroparticleParameters& model, RangeCheck& chec
                "0 to 1e6 (k_BT / r_c)");
 }
 
+void check_watchdog(const WatchdogParameters& watchdog, RangeCheck& check) {
+  check.within("watchdog.temperature[0]", watchdog.lowest_temperature, 0, 1 - tiny, "0 up to below 1");
+  check.within("watchdog.temperature[1]", watchdog.highest_temperature, 1 + tiny, 100, "above 1 up to 100");
+  check.within("watchdog.evaporation", watchdog.evaporation, tiny, 1,
+               "above 0 up to 1 (of a droplet's beads)");
+  check.within("watchdog.leak", watchdog.leak, 0, 1e6, "0 to 1000000 (beads)");
+}
+
 void check_domain(const Domain& domain, double list_range, RangeCheck& check) {
   static const char* const axes = "xyz";
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,6 +97,18 @@ void check_domain(const Domain& domain, double list_range, RangeCheck& check) {
   }
 }
 
+/// What is there before the first bead: refused here, before any of it is allocated.
+void check_memory(const Parameters& parameters, RangeCheck& check) {
+  const MemoryNeed need = memory_need(parameters, 0, 0);
+  if (need.total() <= parameters.max_memory * bytes_per_megabyte) return;
+  const Vector3d size = parameters.domain.size(), fits = largest_domain(parameters);
+  check.holds(false, fmt::format("domain: {:g} x {:g} x {:g} r_c with {:.0f} wall beads takes {:.0f} MB, "
+                                 "allowed: {:.0f} MB (max_memory), such as {:.0f} x {:.0f} x {:.0f} r_c",
+                                 size.x(), size.y(), size.z(), wall_beads(parameters),
+                                 need.total() / bytes_per_megabyte, parameters.max_memory, fits.x(), fits.y(),
+                                 fits.z()));
+}
+
 }  // namespace
 
 std::vector<std::string> violations(const Parameters& parameters) {
@@ -105,6 +127,10 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("observe_interval", parameters.observe_interval, 1, 100000, "1 to 100000 (steps)");
   check.within("angle_window", parameters.angle_window, 0, 1e4, "0 to 10000 (tau)");
   check.within("max_beads", static_cast<double>(parameters.max_beads), 1, 100e6, "1 to 100000000");
+  check.within("max_memory", parameters.max_memory, 10, 1e6, "10 to 1000000 (MB)");
+  check_watchdog(parameters.watchdog, check);
+  // A domain that is out of range is told already.
+  if (found.empty()) check_memory(parameters, check);
   return found;
 }
 

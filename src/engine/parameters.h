@@ -104,6 +104,14 @@ struct MicroparticleParameters {
   bool counted_by_liquid = true;  ///< the liquid counts a body's beads
 };
 
+/// What a run must not do; it is stopped when it does (observe/watchdog.h).
+struct WatchdogParameters {
+  double lowest_temperature = 0.5;   ///< kinetic, of liquid.temperature; [0, 1)
+  double highest_temperature = 2.0;  ///< (1, 100]
+  double evaporation = 0.2;          ///< of a droplet's beads that may be vapour; (0, 1], 1: all
+  std::uint32_t leak = 0;            ///< liquid beads that may be deep in a microparticle; [0, 1e6]
+};
+
 struct Parameters {
   LiquidParameters liquid;
   WallParameters wall;
@@ -117,6 +125,8 @@ struct Parameters {
   std::uint32_t observe_interval = 50;  ///< steps between two looks of the droplet tracker; [1, 100000]
   double angle_window = 20.0;           ///< memory of the running contact angle measurement, tau; [0, 1e4]
   std::uint64_t max_beads = 4'000'000;  ///< moving beads a run may hold; [1, 100e6]
+  double max_memory = 4000;             ///< that the run may take (memory.h), MB; [10, 1e6]
+  WatchdogParameters watchdog;
 };
 
 /// All violated ranges, each as "key: value, allowed: range". Empty when the parameters are sound.

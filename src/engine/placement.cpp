@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/memory.h"
 #include "engine/noise.h"
 #include "engine/observe/droplet_tracker.h"
 
@@ -55,6 +56,19 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
                         "from all other liquid",
                         image.x(), image.y(), image.z(), cutoff));
   }
+}
+
+/// Ids for new beads, rising: those of beads that were taken out first, so that what is kept by id stays as
+/// large as the most beads that were there at once. @param next_id  above all that were ever given; advanced.
+std::vector<std::uint32_t> take_ids(const Beads& beads, std::size_t count, std::uint32_t& next_id) {
+  std::vector<bool> taken(next_id, false);
+  for (const std::uint32_t id : beads.id) taken[id] = true;
+  std::vector<std::uint32_t> ids;
+  ids.reserve(count);
+  for (std::uint32_t id = 0; id < taken.size() && ids.size() < count; ++id)
+    if (!taken[id]) ids.push_back(id);
+  while (ids.size() < count) ids.push_back(next_id++);
+  return ids;
 }
 
 /// Beads of the initial density in a sphere.
@@ -144,9 +158,8 @@ std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Par
     throw InvalidInput(
         fmt::format("droplet: center ({}, {}, {}), radius {}, allowed: finite, radius above 0 (r_c)",
                     center.x(), center.y(), center.z(), radius));
-  if (sphere_beads(radius, parameters) > 2.0 * static_cast<double>(parameters.max_beads))
-    throw InvalidInput(fmt::format("droplet: radius {} r_c holds more than max_beads ({}) beads", radius,
-                                   parameters.max_beads));
+  // The wall may cut a part of the sphere off.
+  require_memory(parameters, 0.5 * sphere_beads(radius, parameters), 0);
   const std::vector<Vector3d> sites = pancake_radius(placement, parameters) > 0
                                           ? pancake_sites(placement, parameters)
                                           : sphere_sites(placement, parameters);
@@ -160,6 +173,7 @@ std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, c
   if (!parameters.domain.contains(lower) || !parameters.domain.contains(upper) ||
       !(lower.array() < upper.array()).all())
     throw InvalidInput("slab: allowed: lower below upper, both in the domain");
+  require_memory(parameters, (upper - lower).prod() * parameters.liquid.initial_density, 0);
   const double a = fcc_constant(parameters.liquid.initial_density);
   // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
   const Vector3d size = upper - lower;
@@ -172,16 +186,14 @@ std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, c
 
 std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
                         std::uint64_t step, std::uint32_t& next_id) {
-  if (beads.size() + sites.size() > parameters.max_beads)
-    throw InvalidInput(fmt::format("{} beads, allowed: {} in all (max_beads), {} are there", sites.size(),
-                                   parameters.max_beads, beads.size()));
   require_free(beads, sites, parameters);
+  const std::vector<std::uint32_t> ids = take_ids(beads, sites.size(), next_id);
   const StepKey key = step_key(parameters.seed, step, Stream::velocity);
   const double spread = std::sqrt(parameters.liquid.temperature);
   std::vector<Vector3d> velocities;
   Vector3d mean = Vector3d::Zero();
-  for (std::size_t k = 0; k < sites.size(); ++k) {
-    const std::uint32_t id = next_id + static_cast<std::uint32_t>(k);
+  velocities.reserve(sites.size());
+  for (const std::uint32_t id : ids) {
     velocities.emplace_back(gaussian_noise(key, id, 0), gaussian_noise(key, id, 1),
                             gaussian_noise(key, id, 2));
     mean += velocities.back() / static_cast<double>(sites.size());
@@ -190,7 +202,7 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const 
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const Eigen::Vector3f at = sites[k].cast<float>(),
                           moving = (spread * (velocities[k] - mean)).cast<float>();
-    beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, next_id++);
+    beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, ids[k]);
   }
   return sites.size();
 }

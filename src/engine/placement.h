@@ -18,10 +18,9 @@ std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Par
 std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, const Parameters& parameters);
 
 /// Puts a bead on every site, with thermal velocities of no net momentum that depend on (seed, step, bead id)
-/// only.
-/// @param next_id  id of the first bead; advanced.
-/// @throws InvalidInput, unchanged, when a site is within r_c of a bead or there would be more than
-/// max_beads.
+/// only. Ids of beads that were taken out are given anew.
+/// @param next_id  above all ids that were ever given; advanced.
+/// @throws InvalidInput, unchanged, when a site is within r_c of a bead.
 /// @returns the number of beads placed.
 std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
                         std::uint64_t step, std::uint32_t& next_id);

@@ -26,11 +26,16 @@ void require_inside(const Record& place, double margin, const Domain& domain) {
 }
 
 void require_sound(const Beads& beads, std::uint32_t next_bead_id, const DropletTracker& tracker,
-                   const Domain& domain) {
+                   const Parameters& parameters) {
+  const Domain& domain = parameters.domain;
   for (const AlignedVector<Record>* array :
        {&beads.position, &beads.predicted, &beads.velocity, &beads.force, &beads.listed})
     if (array->size() != beads.size()) throw InvalidInput("saved state: arrays of unequal length");
 
+  // What is kept by id must fit.
+  if (next_bead_id > parameters.max_beads)
+    throw InvalidInput(fmt::format("saved state: next bead {}, allowed: up to {} (max_beads)", next_bead_id,
+                                   parameters.max_beads));
   // Whoever was in a droplet at some look is known to the tracker; what was placed after them is still there.
   if (tracker.known_beads() > next_bead_id || next_bead_id - tracker.known_beads() > beads.size())
     throw InvalidInput(fmt::format("saved state: next bead {}, allowed: {} to {}", next_bead_id,

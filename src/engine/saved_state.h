@@ -16,7 +16,7 @@ constexpr std::uint64_t most_steps = 1'000'000'000'000'000;
 /// @param next_bead_id  id of the next bead that will be placed.
 /// @throws InvalidInput.
 void require_sound(const Beads& beads, std::uint32_t next_bead_id, const DropletTracker& tracker,
-                   const Domain& domain);
+                   const Parameters& parameters);
 
 /// The same of the place of a bead, of liquid or of a microparticle, r_c.
 void require_inside(const Record& place, double margin, const Domain& domain);

@@ -12,10 +12,12 @@
 #include "engine/bodies/microparticles.h"
 #include "engine/forces.h"
 #include "engine/integrate.h"
+#include "engine/memory.h"
 #include "engine/observe/carriage.h"
 #include "engine/observe/droplet_tracker.h"
 #include "engine/observe/state_hash.h"
 #include "engine/observe/virial.h"
+#include "engine/observe/watchdog.h"
 #include "engine/observe/wetted_area.h"
 #include "engine/pairs.h"
 #include "engine/placement.h"
@@ -31,9 +33,6 @@ const Parameters& checked(const Parameters& parameters) {
   if (!found.empty()) throw InvalidInput(fmt::format("{}", fmt::join(found, "\n")));
   return parameters;
 }
-
-/// Mean kinetic temperature above this many times the set one is a run that is blowing up.
-constexpr double runaway_factor = 5.0;
 
 Vector3d velocity_of(const Record& record) { return {record.x, record.y, record.z}; }
 
@@ -101,9 +100,11 @@ struct Simulation::State {
     const Record& p = beads.position[report.wild_bead];
     const Record& v = beads.velocity[report.wild_bead];
     stop(fmt::format(
-        "bead {} at ({:.3f}, {:.3f}, {:.3f}) moves with velocity ({:.3g}, {:.3g}, {:.3g}), more than {} r_c "
-        "a step; look at time_step ({}) and the liquid's attraction and repulsion",
-        beads.id[report.wild_bead], p.x, p.y, p.z, v.x, v.y, v.z, largest_step, parameters.time_step));
+        "bead {} (droplet {}, 0 is the vapour) at ({:.3f}, {:.3f}, {:.3f}) moves with velocity ({:.3g}, "
+        "{:.3g}, {:.3g}), more than {} r_c a step or to no number; look at time_step ({}) and the liquid's "
+        "attraction and repulsion",
+        beads.id[report.wild_bead], tracker.droplet_of(beads.id[report.wild_bead]), p.x, p.y, p.z, v.x, v.y,
+        v.z, largest_step, parameters.time_step));
   }
 
   void require_sound_bodies(const BodyDriftReport& report) {
@@ -137,21 +138,11 @@ struct Simulation::State {
     tracker.update(step, beads, pairs.blocks());
     carriage.update(step, microparticles, beads, pairs, parameters, tracker);
     microparticles.note_look();
-    for (const Microparticle& particle : microparticles.all())
-      if (const std::uint32_t leaked = carriage.of(particle.id).leaked)
-        stop(
-            fmt::format("microparticle {}: {} liquid beads inside; its {} beads on radius {} r_c at "
-                        "attraction {} don't keep the liquid out, look at beads and liquid_repulsion ({})",
-                        particle.id, leaked, particle.bead_count(), particle.placement.radius,
-                        particle.placement.attraction, parameters.microparticles.liquid_repulsion));
   }
 
-  void require_sound_temperature() {
-    const double now = temperature();
-    if (!(now <= runaway_factor * parameters.liquid.temperature))
-      stop(fmt::format("temperature {:.4g} against {} set; look at time_step ({}) and random_amplitude ({})",
-                       now, parameters.liquid.temperature, parameters.time_step,
-                       parameters.liquid.random_amplitude));
+  void require_sound() {
+    const std::string found = find_fault(parameters, beads, microparticles, tracker, carriage);
+    if (!found.empty()) stop(found);
   }
 
   MicroparticleObservation observed(const Microparticle& particle) const {
@@ -181,8 +172,8 @@ struct Simulation::State {
   }
 
   void archive(Archive& archive) {
-    // 1: beads in the order of neighbour lists. 2: no microparticles.
-    constexpr std::uint64_t current = 3;
+    // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is.
+    constexpr std::uint64_t current = 4;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
     if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));
@@ -243,8 +234,8 @@ void Simulation::step() {
   ++s.step;
 
   if (s.step % s.parameters.observe_interval == 0) {
-    s.require_sound_temperature();
     s.look();
+    s.require_sound();
   }
 }
 
@@ -267,6 +258,8 @@ std::size_t Simulation::add_droplet(const DropletPlacement& placement) {
 
 std::size_t Simulation::place(const std::vector<Vector3d>& sites) {
   State& s = *state_;
+  require_memory(s.parameters, static_cast<double>(s.beads.size() + sites.size()),
+                 static_cast<double>(s.microparticles.beads().size()));
   s.microparticles.require_clear(sites);
   const std::size_t placed = place_beads(s.beads, sites, s.parameters, s.step, s.next_bead_id);
   refresh();
@@ -292,6 +285,7 @@ void Simulation::remove_droplet(std::uint32_t id) {
     throw InvalidInput(
         fmt::format("droplet {} does not exist; droplets are [{}]", id, fmt::join(known, ", ")));
   }
+  s.tracker.forget(id);
   s.beads.reorder(kept);
   refresh();
 }
@@ -335,6 +329,9 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
 
 std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
   State& s = *state_;
+  const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
+  require_memory(s.parameters, static_cast<double>(s.beads.size()),
+                 static_cast<double>(s.microparticles.beads().size() + told));
   std::vector<Vector3d> liquid;
   for (const Record& bead : s.beads.position) liquid.emplace_back(bead.x, bead.y, bead.z);
   const double force = placement.magnetic ? s.far.magnetic.norm() : 0.0;
@@ -373,7 +370,7 @@ void Simulation::load_state(const std::string& bytes) {
   Archive archive(bytes);
   loaded->archive(archive);
   if (!archive.at_end()) throw InvalidInput("saved state: longer than it should be");
-  require_sound(loaded->beads, loaded->next_bead_id, loaded->tracker, s.parameters.domain);
+  require_sound(loaded->beads, loaded->next_bead_id, loaded->tracker, s.parameters);
   omp_set_num_threads(s.threads);
   try {
     loaded->pairs.restore(loaded->beads, loaded->wall);

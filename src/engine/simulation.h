@@ -14,9 +14,9 @@
 
 namespace dmf::engine {
 
-/// The run can't go on: a non-finite value, a runaway temperature, a bead that moved too far in one step.
-/// `what()` says which bead, which step and which setting to look at. The simulation refuses to step from
-/// then on.
+/// The run can't go on: a bead moved too far in one step or to no number, or the watchdog found a fault
+/// (observe/watchdog.h). `what()` says which bead, droplet or microparticle, which step and which setting to
+/// look at. The simulation refuses to step from then on.
 class Instability : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

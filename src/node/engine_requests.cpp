@@ -40,6 +40,7 @@ chip::Reply EngineThread::apply(const chip::Command& command) {
     const double old_time = time_of(experiment_->steps());
     if (reset) collect_events();
     chip::Reply reply = experiment_->apply(command);
+    if (fault_.empty() && !experiment_->fault().empty()) halt(experiment_->fault());
     if (!reply.success) return reply;
     if (reset) {
       end_advance(false, "ended by ~reset");

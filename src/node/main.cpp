@@ -7,6 +7,7 @@
 
 #include "chip/scene.h"
 #include "engine/wait_policy.h"
+#include "node/memory_limit.h"
 #include "node/node.h"
 #include "node/options.h"
 
@@ -34,6 +35,9 @@ int main(int argc, char** argv) {
   try {
     const dmf::node::Options options = dmf::node::load_options(ros::NodeHandle("~"));
     const dmf::chip::Scene scene = dmf::chip::load_scene(options.scene);
+    // Beside the run: stacks and heaps of some twenty threads, queues, messages on their way.
+    constexpr double kBeside = 1000;  // MB
+    dmf::node::limit_memory(scene.parameters.max_memory + kBeside);
     const dmf::node::Node node(options, scene);
     while (ros::ok() && !asked_to_end) ros::WallDuration(0.05).sleep();
   } catch (const std::exception& error) {

@@ -14,9 +14,12 @@ namespace dmf::node {
 
 /// What the engine thread leaves for the publisher thread. The engine never waits here: a frame that was not
 /// taken yet is replaced by the newer one, and so are a reading and the clock. Commands, events and state
-/// hashes are kept, in order, until taken.
+/// hashes are kept, in order, until taken; when nobody takes them for long, those after the first kMostWaiting
+/// are counted and no longer kept.
 class Outbox {
  public:
+  static constexpr std::size_t kMostWaiting = 100'000;  ///< commands, events, and hashes
+
   struct Delivery {
     std::shared_ptr<const Frame> frame;  ///< null when there is no new one
     std::vector<CommandNote> commands;
@@ -24,6 +27,7 @@ class Outbox {
     std::vector<StateHashNote> hashes;
     std::optional<CapacitanceNote> capacitance;  ///< newest that was not taken
     std::uint64_t clock = 0;                     ///< newest ROS time, ns; 0 when there is no news
+    std::uint64_t lost = 0;                      ///< commands, events and hashes that found no room
   };
 
   void put(std::shared_ptr<const Frame> frame) {
@@ -33,13 +37,13 @@ class Outbox {
     });
   }
   void put(CommandNote command) {
-    change([&](Delivery& d) { d.commands.push_back(std::move(command)); });
+    change([&](Delivery& d) { keep(d, d.commands, std::move(command)); });
   }
   void put(EventNote event) {
-    change([&](Delivery& d) { d.events.push_back(std::move(event)); });
+    change([&](Delivery& d) { keep(d, d.events, std::move(event)); });
   }
   void put(StateHashNote hash) {
-    change([&](Delivery& d) { d.hashes.push_back(std::move(hash)); });
+    change([&](Delivery& d) { keep(d, d.hashes, std::move(hash)); });
   }
   void put(CapacitanceNote reading) {
     change([&](Delivery& d) { d.capacitance = std::move(reading); });
@@ -64,6 +68,14 @@ class Outbox {
   }
 
  private:
+  template <class Note>
+  static void keep(Delivery& delivery, std::vector<Note>& line, Note note) {
+    if (line.size() < kMostWaiting)
+      line.push_back(std::move(note));
+    else
+      ++delivery.lost;
+  }
+
   template <class Change>
   void change(const Change& apply) {
     const std::lock_guard lock(mutex_);

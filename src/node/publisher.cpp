@@ -1,5 +1,6 @@
 #include "node/publisher.h"
 
+#include <ros/console.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -88,6 +89,9 @@ void Publisher::publish(const Outbox::Delivery& delivery) {
   for (const CommandNote& command : delivery.commands) memory_.before_run(command.run);
   // The clock first: what follows then never lies in its subscribers' future.
   if (delivery.clock > 0) publish_clock(delivery.clock);
+  if (delivery.lost > 0)
+    ROS_ERROR("%zu commands and events were lost: nothing took them",
+              static_cast<std::size_t>(delivery.lost));
   for (const CommandNote& command : delivery.commands) publish_command(command);
   for (const StateHashNote& hash : delivery.hashes) run_record_.publish(to_run_record(hash, context_));
   for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));

@@ -15,6 +15,8 @@
 namespace {
 
 constexpr int kTryAgain = 75;  // EX_TEMPFAIL of sysexits.h
+/// Exit status of a run that the watchdog stopped; what was asked for wrongly ends with 1.
+constexpr int kStoppedByFault = 3;
 
 /// A word of a command line as a shell takes it.
 std::string quoted(const std::string& word) {
@@ -127,6 +129,9 @@ int main(int argc, char** argv) {
           result.scene, result.beads, result.steps, result.time, result.wall_s, result.ns_per_bead_step,
           result.kernel, result.threads, result.temperature);
     if (result.interrupted_by != 0) return tell_how_to_go_on(result, options, argc, argv);
+  } catch (const engine::Instability& fault) {
+    fmt::print(stderr, "dmf_run: the run was stopped: {}\n", fault.what());
+    return kStoppedByFault;
   } catch (const std::exception& problem) {
     fmt::print(stderr, "dmf_run: {}\n", problem.what());
     return 1;

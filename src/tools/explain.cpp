@@ -9,6 +9,7 @@
 
 #include "chip/polygon.h"
 #include "engine/droplet.h"
+#include "engine/memory.h"
 #include "engine/simulation.h"
 
 namespace dmf::tools {
@@ -20,10 +21,6 @@ constexpr double water_density = 998.2, water_viscosity = 1.002e-3, water_tensio
 constexpr double thermal_energy = 4.047e-21;
 /// Droplet speed that the dimensionless numbers are quoted at, r_c/tau: what the shipped scenes show.
 constexpr double typical_speed = 0.05;
-/// Memory of a moving bead with all that goes with it and of a wall bead, bytes: measured, see
-/// docs/performance.md.
-constexpr double bytes_per_moving_bead = 180, bytes_per_wall_bead = 30;
-
 /// Beyond this factor two dimensionless numbers are not alike.
 constexpr double alike_within = 3;
 /// Below this a Bond number does not matter: gravity lowers a droplet by a twentieth of its height at most.
@@ -63,6 +60,18 @@ std::string about_electrodes(const chip::Scene& scene) {
   const double volume = beads / scene.parameters.liquid.bulk_density * mm * mm * mm;  // mm^3, which is ul
   text += fmt::format("one electrode is filled by {:.0f} beads, {:.3g} ul\n", beads, volume);
   return text;
+}
+
+/// Of all microparticles of a scene; nearly, where the scene leaves the number to the engine.
+double body_beads(const chip::Scene& scene) {
+  double beads = 0;
+  for (const auto& body : scene.microparticles) {
+    beads += body.smooth            ? 1.0
+             : !body.points.empty() ? static_cast<double>(body.points.size())
+             : body.beads > 0       ? static_cast<double>(body.beads)
+                                    : 612 * body.radius * body.radius;
+  }
+  return beads;
 }
 
 }  // namespace
@@ -154,19 +163,23 @@ std::string explain(const chip::Scene& scene) {
     moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * liquid.initial_density;
     largest = std::max(largest, droplet.radius);
   }
-  const engine::Domain& domain = parameters.domain;
-  const double plates = domain.has_top_plate() ? 2 : domain.has_wall() ? 1 : 0;
-  const double wall = plates * 2 * parameters.wall.layers * size.x() * size.y() /
-                      std::pow(parameters.wall.lattice_constant, 2);
+  const engine::MemoryNeed need = engine::memory_need(parameters, moving, body_beads(scene));
   std::string text = fmt::format("{}: {}\n", scene.name, scene.description);
   text += fmt::format("domain       {} x {} x {} r_c = {:.3g} x {:.3g} x {:.3g} mm\n", size.x(), size.y(),
                       size.z(), size.x() * units.length_m * 1e3, size.y() * units.length_m * 1e3,
                       size.z() * units.length_m * 1e3);
   text += fmt::format("liquid       {} droplets, about {:.0f} moving beads\n", scene.droplets.size(), moving);
-  text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n", wall);
+  text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n",
+                      engine::wall_beads(parameters));
   text += about_electrodes(scene);
-  text += fmt::format("memory       about {:.0f} MB\n",
-                      (moving * bytes_per_moving_bead + wall * bytes_per_wall_bead) / 1e6);
+  const auto megabytes = [](double bytes) { return bytes / engine::bytes_per_megabyte; };
+  text += fmt::format(
+      "memory       about {:.0f} MB: liquid {:.1f}, wall {:.1f}, cells {:.1f}, microparticles {:.1f}; "
+      "allowed: "
+      "{:.0f} MB, that is {} moving beads\n",
+      megabytes(need.total()), megabytes(need.liquid), megabytes(need.wall), megabytes(need.cells),
+      megabytes(need.bodies), parameters.max_memory,
+      engine::most_moving_beads(parameters, body_beads(scene)));
   text += fmt::format("one r_c      {:.4g} um, one tau {:.4g} us, one bead {:.4g} kg\n", units.length_m * 1e6,
                       units.time_s * 1e6, units.mass_kg);
   text += fmt::format("one r_c/tau  {:.4g} mm/s\n", units.velocity_m_per_s() * 1e3);

@@ -1,21 +1,28 @@
 #include "yaml/yaml_reader.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numeric>
 #include <set>
-#include <sstream>
 
 #include "yaml/invalid_input.h"
+#include "yaml/yaml_document.h"
 
 namespace dmf {
 
 namespace {
+
+// What a file may ask for. Real scenes have some kilobytes; the limits keep a file of another kind from
+// taking minutes and gigabytes. yaml-cpp takes some 300 bytes for a value of two characters.
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
+constexpr std::size_t kMaxPath = 4000;       // characters; file systems allow no more
+constexpr std::size_t kMaxKeys = 10'000;     // of one mapping
+constexpr std::size_t kMaxValues = 1 << 20;  // read from lists: an alias may stand for a list many times
+constexpr std::size_t kMostTold = 100;       // violations
 
 int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
 
@@ -67,6 +74,8 @@ struct YamlReader::Document {
   std::string name;
   std::optional<Units> units;
   std::vector<Violation> violations;
+  std::size_t untold = 0;  ///< more violations
+  std::size_t values = 0;  ///< read from lists
   /// Every mapping that was handed out, by path, so that reading one twice shares what is known of its keys.
   std::map<std::string, std::shared_ptr<Mapping>> mappings;
 
@@ -75,7 +84,12 @@ struct YamlReader::Document {
     const std::string text = fmt::format("{}:{}: {}{}", name, line, where, violation);
     // What is read twice is wrong twice, and told once.
     const auto same = [&text](const Violation& told) { return told.text == text; };
-    if (std::none_of(violations.begin(), violations.end(), same)) violations.push_back({line, text});
+    if (std::any_of(violations.begin(), violations.end(), same)) return;
+    if (violations.size() < kMostTold) {
+      violations.push_back({line, text});
+    } else {
+      ++untold;
+    }
   }
 
   [[noreturn]] void refuse(int line, const std::string& violation) {
@@ -117,14 +131,13 @@ struct YamlReader::Mapping {
 /// What the getters share, kept out of the header so that it needs no yaml-cpp.
 class YamlReader::Internals {
  public:
-  static YamlReader read(std::istream& input, const std::string& name) {
+  static YamlReader read(const std::string& text, const std::string& name) {
     auto document = std::make_shared<Document>();
     document->name = name;
     try {
-      const std::vector<YAML::Node> parts = YAML::LoadAll(input);
-      if (parts.size() != 1 || !parts[0].IsMap())
-        document->refuse(1, "allowed: one mapping, `key: value` lines");
-      return open(document, parts[0], "");
+      const YAML::Node root = load_document(text);
+      if (!root.IsMap()) document->refuse(1, "allowed: one mapping, `key: value` lines");
+      return open(document, root, "");
     } catch (const YAML::Exception& error) {
       document->refuse(std::max(error.mark.line, 0) + 1, fmt::format("is not YAML: {}", error.msg));
     }
@@ -137,6 +150,10 @@ class YamlReader::Internals {
     mapping = std::make_shared<Mapping>();
     mapping->path = path;
     mapping->line = line_of(node);
+    if (node.size() > kMaxKeys) {
+      document->note(mapping->line, path, fmt::format("{} keys, allowed: up to {}", node.size(), kMaxKeys));
+      return {document, mapping};
+    }
     for (const auto& pair : node) {
       const int line = line_of(pair.first);
       if (!pair.first.IsScalar()) {
@@ -223,6 +240,12 @@ class YamlReader::Internals {
       refuse_value(reader, node, path, fmt::format("a list of {} {}", count_text(count), of));
       return values;
     }
+    reader.document_->values += node.size();
+    if (reader.document_->values > kMaxValues) {
+      reader.document_->note(line_of(node), path,
+                             fmt::format("too many values, allowed: {} in all lists", kMaxValues));
+      return values;
+    }
     std::size_t index = 0;
     for (const YAML::Node& element : node) {
       if (auto value = read(element, fmt::format("{}[{}]", path, index++))) values.push_back(*value);
@@ -256,17 +279,27 @@ YamlReader::YamlReader(std::shared_ptr<Document> document, std::shared_ptr<Mappi
 YamlReader YamlReader::load(const std::string& file) { return parse(text_of(file), file); }
 
 std::string YamlReader::text_of(const std::string& file) {
-  std::ifstream input(file);
-  std::ostringstream text;
-  // Opening a directory succeeds, reading it does not.
-  if (!input || !(text << input.rdbuf()))
-    throw InvalidInput(fmt::format("{}: can't be read, or is empty", file));
-  return text.str();
+  if (file.size() > kMaxPath)
+    throw InvalidInput(fmt::format("{}...: a path of {} characters, allowed: up to {}", file.substr(0, 60),
+                                   file.size(), kMaxPath));
+  std::error_code error;
+  // A pipe or a device would never come to an end.
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InvalidInput(fmt::format("{}: can't be read, allowed: a file", file));
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error || bytes == 0 || bytes > kMaxBytes)
+    throw InvalidInput(fmt::format("{}: {} bytes, allowed: 1 to {}", file, bytes, kMaxBytes));
+  std::string text(bytes, '\0');
+  std::ifstream input(file, std::ios::binary);
+  if (!input.read(text.data(), static_cast<std::streamsize>(bytes)))
+    throw InvalidInput(fmt::format("{}: can't be read", file));
+  return text;
 }
 
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
-  std::istringstream input(text);
-  return Internals::read(input, name);
+  if (text.size() > kMaxBytes)
+    throw InvalidInput(fmt::format("{}: {} bytes, allowed: up to {}", name, text.size(), kMaxBytes));
+  return Internals::read(text, name);
 }
 
 void YamlReader::set_units(const Units& units) { document_->units = units; }
@@ -314,6 +347,8 @@ void YamlReader::finish() const {
                    [](const auto& a, const auto& b) { return a.line < b.line; });
   std::vector<std::string> lines;
   for (const auto& violation : violations) lines.push_back(violation.text);
+  if (document_->untold > 0)
+    lines.push_back(fmt::format("{}: and {} more", document_->name, document_->untold));
   throw InvalidInput(fmt::format("{}", fmt::join(lines, "\n")));
 }
 
@@ -428,11 +463,11 @@ std::optional<YamlReader> YamlReader::optional_mapping(const std::string& key) c
   return mapping(key);
 }
 
-std::vector<YamlReader> YamlReader::mappings(const std::string& key) const {
+std::vector<YamlReader> YamlReader::mappings(const std::string& key, const Count& count) const {
   if (!has(key)) return {};
   const auto* entry = Internals::find(*this, key, false, "");
   return Internals::list<YamlReader>(
-      *this, mapping_->path_of(key), entry->value, {}, "mappings",
+      *this, mapping_->path_of(key), entry->value, count, "mappings",
       [&](const YAML::Node& node, const std::string& path) -> std::optional<YamlReader> {
         if (node.IsMap()) return Internals::open(document_, node, path);
         Internals::refuse_value(*this, node, path, "a mapping");

@@ -90,7 +90,7 @@ class YamlReader {
   YamlReader mapping(const std::string& key) const;
   std::optional<YamlReader> optional_mapping(const std::string& key) const;
   /// A list of mappings; empty when absent.
-  std::vector<YamlReader> mappings(const std::string& key) const;
+  std::vector<YamlReader> mappings(const std::string& key, const Count& count = {}) const;
   /// The keys of a mapping whose keys are free, such as names. All count as known.
   std::vector<std::string> keys() const;
 

@@ -136,6 +136,43 @@ TEST(YamlReader, ViolationsFoundElsewherePointAtTheDeepestLineThereIs) {
             "file.yaml:3: liquid.attraction: 5, allowed: (-200, 0)");
 }
 
+TEST(YamlReader, RefusesWhatStandsBehindTheMappingInsteadOfReadingForEver) {
+  // yaml-cpp 0.7 never comes to the end of the first two and takes all memory there is.
+  for (const char* text : {"{a: 1}, b", ",", "{a: 1}\"x\""})
+    EXPECT_TRUE(holds(refusal([&] { read(text); }), "file.yaml:1: allowed: one mapping")) << text;
+}
+
+TEST(YamlReader, TellsTheFirstViolationsAndCountsTheRest) {
+  std::string text;
+  for (int k = 0; k < 5000; ++k) text += "unknown" + std::to_string(k) + ": 1\n";
+  const std::string said = refusal([&] { read(text).finish(); });
+  EXPECT_TRUE(holds(said, "file.yaml:100: unknown99: unknown key"));
+  EXPECT_FALSE(holds(said, "unknown100:"));
+  EXPECT_TRUE(holds(said, "file.yaml: and 4900 more"));
+}
+
+TEST(YamlReader, RefusesFilesOfAnotherKind) {
+  EXPECT_TRUE(
+      holds(refusal([] { YamlReader::load("/dev/zero"); }), "/dev/zero: can't be read, allowed: a file"));
+  EXPECT_TRUE(holds(refusal([] { YamlReader::load("/tmp"); }), "allowed: a file"));
+  EXPECT_TRUE(holds(refusal([] { YamlReader::load(std::string(5000, 'x')); }),
+                    "5000 characters, allowed: up to 4000"));
+  EXPECT_TRUE(holds(refusal([] { read("a: " + std::string(2 << 20, '1')); }),
+                    "2097155 bytes, allowed: up to 1048576"));
+}
+
+TEST(YamlReader, ReadsNoListThatAliasesMakeLargerThanAnyFile) {
+  // 20,000 rows that are one list of 1,000 values each: twenty million values in a file of 100 kB.
+  std::string text = "a: &a [0";
+  for (int k = 1; k < 1000; ++k) text += ",0";
+  text += "]\nrows: [*a";
+  for (int k = 1; k < 20000; ++k) text += ",*a";
+  YamlReader root = read(text + "]\n");
+  root.integers("a", 0, 9, {});
+  root.integer_rows("rows", 0, 9, {}, {});
+  EXPECT_TRUE(holds(refusal([&] { root.finish(); }), "too many values, allowed: 1048576 in all lists"));
+}
+
 TEST(YamlReader, ARangeKnowsItsOpenEnds) {
   EXPECT_FALSE(Range::above(0).contains(0));
   EXPECT_TRUE(Range::at_least(0).contains(0));

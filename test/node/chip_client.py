@@ -1,7 +1,9 @@
 """What the node's tests share: proxies of all services, and waiting for messages by wall time."""
 import threading
 import time
+import xmlrpc.client
 
+import rosgraph
 import rospy
 from dmf_sim import srv
 from std_srvs.srv import Empty, Trigger
@@ -43,6 +45,21 @@ class Chip:
 
     def hash(self):
         return self.get_state(True).state.state_hash
+
+
+def pid_of(node):
+    """The process of a node on this machine."""
+    uri = rosgraph.Master("/chip_client").lookupNode(node)
+    return xmlrpc.client.ServerProxy(uri).getPid("/chip_client")[2]
+
+
+def memory_of(pid, kind="VmRSS"):
+    """Of a process, MB: VmRSS now, VmHWM its peak."""
+    with open(f"/proc/{pid}/status") as status:
+        for line in status:
+            if line.startswith(kind + ":"):
+                return int(line.split()[1]) * 1024 / 1e6
+    raise AssertionError(f"process {pid} has no {kind}")
 
 
 class Listener:

@@ -286,5 +286,24 @@ TEST(EngineThread, AFaultHaltsTheRunUntilItIsReset) {
   EXPECT_EQ(engine.inspect(false)->snapshot->step, 0u);
 }
 
+TEST(Outbox, KeepsABoundedNumberOfWhatNobodyTakes) {
+  Outbox outbox;
+  for (std::size_t k = 0; k < Outbox::kMostWaiting + 3; ++k) {
+    EventNote event;
+    event.step = k;
+    outbox.put(std::move(event));
+  }
+  Outbox::Delivery delivery;
+  ASSERT_TRUE(outbox.take(delivery, std::chrono::milliseconds(0)));
+  ASSERT_EQ(delivery.events.size(), Outbox::kMostWaiting);
+  EXPECT_EQ(delivery.events.back().step, Outbox::kMostWaiting - 1);
+  EXPECT_EQ(delivery.lost, 3u);
+  // And whoever takes finds room again.
+  outbox.put(EventNote{});
+  ASSERT_TRUE(outbox.take(delivery, std::chrono::milliseconds(0)));
+  EXPECT_EQ(delivery.events.size(), 1u);
+  EXPECT_EQ(delivery.lost, 0u);
+}
+
 }  // namespace
 }  // namespace dmf::node

@@ -108,9 +108,10 @@ void DropletTracker::update(std::uint64_t step, const Beads& beads,
   const double elapsed = static_cast<double>(step - last_step_) * parameters_.time_step;
   last_step_ = step;
   std::vector<Component> components = connected_components(beads, blocks);
-  give_identities(step, components);
+  const std::map<std::uint32_t, std::uint32_t> merged_into = give_identities(step, components);
 
   vapour_beads_ = beads.size();
+  const std::vector<std::uint32_t> before = droplet_of_bead_;
   std::fill(droplet_of_bead_.begin(), droplet_of_bead_.end(), 0u);
   droplets_.clear();
   for (const Component& component : components) {
@@ -123,6 +124,23 @@ void DropletTracker::update(std::uint64_t step, const Beads& beads,
     droplets_.push_back(measure(component, beads, blocks, elapsed));
   }
   std::sort(droplets_.begin(), droplets_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+
+  std::map<std::uint32_t, std::uint32_t> evaporated_from;
+  for (const std::uint32_t id : beads.id) {
+    if (droplet_of(id) != 0) continue;
+    std::uint32_t droplet = id < before.size() ? before[id] : 0;
+    if (droplet == 0)
+      if (const auto earlier = evaporated_from_.find(id); earlier != evaporated_from_.end())
+        droplet = earlier->second;
+    if (const auto merged = merged_into.find(droplet); merged != merged_into.end()) droplet = merged->second;
+    if (droplet != 0) evaporated_from[id] = droplet;
+  }
+  evaporated_from_ = std::move(evaporated_from);
+}
+
+void DropletTracker::forget(std::uint32_t droplet) {
+  for (auto bead = evaporated_from_.begin(); bead != evaporated_from_.end();)
+    bead = bead->second == droplet ? evaporated_from_.erase(bead) : std::next(bead);
 }
 
 std::vector<DropletTracker::Component> DropletTracker::connected_components(
@@ -172,7 +190,9 @@ std::vector<DropletTracker::Component> DropletTracker::connected_components(
   return components;
 }
 
-void DropletTracker::give_identities(std::uint64_t step, std::vector<Component>& components) {
+std::map<std::uint32_t, std::uint32_t> DropletTracker::give_identities(std::uint64_t step,
+                                                                       std::vector<Component>& components) {
+  std::map<std::uint32_t, std::uint32_t> merged_into;
   // Who inherits each droplet: the component with most of its beads.
   std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> heirs;  // droplet -> (beads, component)
   for (std::size_t c = 0; c < components.size(); ++c)
@@ -197,8 +217,11 @@ void DropletTracker::give_identities(std::uint64_t step, std::vector<Component>&
           });
       Memory memory = std::move(memory_.at(component.id));
       if (inherited.size() > 1) {
-        for (const std::uint32_t droplet : inherited)
-          if (droplet != component.id) memory.parents.push_back(droplet);
+        for (const std::uint32_t droplet : inherited) {
+          if (droplet == component.id) continue;
+          memory.parents.push_back(droplet);
+          merged_into[droplet] = component.id;
+        }
         events_.push_back({DropletEvent::Kind::merged, step, inherited, {component.id}});
       }
       remembered.emplace(component.id, std::move(memory));
@@ -220,6 +243,7 @@ void DropletTracker::give_identities(std::uint64_t step, std::vector<Component>&
     if (heirs.count(droplet.id) == 0)
       events_.push_back({DropletEvent::Kind::vanished, step, {droplet.id}, {}});
   memory_ = std::move(remembered);
+  return merged_into;
 }
 
 DropletObservation DropletTracker::measure(const Component& component, const Beads& beads,
@@ -321,6 +345,15 @@ void DropletTracker::archive(Archive& archive) {
   archive(next_id_);
   archive(vapour_beads_);
   archive(droplet_of_bead_);
+  std::vector<std::uint32_t> vapour, sources;
+  for (const auto& [bead, droplet] : evaporated_from_) {
+    vapour.push_back(bead);
+    sources.push_back(droplet);
+  }
+  archive(vapour);
+  archive(sources);
+  if (vapour.size() != sources.size()) throw InvalidInput("saved state: vapour without a source");
+  for (std::size_t k = 0; k < vapour.size(); ++k) evaporated_from_[vapour[k]] = sources[k];
   std::vector<std::uint32_t> ids;
   for (const auto& entry : memory_) ids.push_back(entry.first);
   archive(ids);

@@ -37,6 +37,11 @@ class DropletTracker {
   }
   /// Beads with ids below this were in a droplet at some look, but for vapour among them.
   std::size_t known_beads() const { return droplet_of_bead_.size(); }
+  /// The droplet that each bead of the vapour was last part of, or what that one has merged into; by bead id.
+  /// Beads that were placed as vapour, or whose droplet was taken off the chip, are left out.
+  const std::map<std::uint32_t, std::uint32_t>& evaporated_from() const { return evaporated_from_; }
+  /// A droplet is about to be taken off the chip: what evaporated from it before is nobody's loss.
+  void forget(std::uint32_t droplet);
   std::vector<DropletEvent> take_events() { return std::exchange(events_, {}); }
 
   /// @throws InvalidInput when what is read can't be a tracker's.
@@ -60,7 +65,9 @@ class DropletTracker {
 
   std::vector<Component> connected_components(const Beads& beads,
                                               const std::vector<NeighbourBlock>& blocks) const;
-  void give_identities(std::uint64_t step, std::vector<Component>& components);
+  /// @returns for each droplet that has merged into another one: which.
+  std::map<std::uint32_t, std::uint32_t> give_identities(std::uint64_t step,
+                                                         std::vector<Component>& components);
   DropletObservation measure(const Component& component, const Beads& beads,
                              const std::vector<NeighbourBlock>& blocks, double elapsed);
   void measure_angles(DropletObservation& droplet, const Component& component, double elapsed);
@@ -70,8 +77,9 @@ class DropletTracker {
   std::uint64_t last_step_ = 0;
   std::uint32_t next_id_ = 1;
   std::size_t vapour_beads_ = 0;
-  std::vector<std::uint32_t> droplet_of_bead_;  ///< by bead id
-  std::map<std::uint32_t, Memory> memory_;      ///< by droplet id
+  std::vector<std::uint32_t> droplet_of_bead_;              ///< by bead id
+  std::map<std::uint32_t, std::uint32_t> evaporated_from_;  ///< droplet, by bead id
+  std::map<std::uint32_t, Memory> memory_;                  ///< by droplet id
   std::vector<DropletObservation> droplets_;
   std::vector<DropletEvent> events_;
 };

@@ -44,6 +44,7 @@ void Plates::add_plate(const WallParameters& wall, double plane, int outward, do
   plate.grid.cells[2] = 1;
   std::vector<std::uint32_t> order;
   plate.grid.sort(unsorted.data(), unsorted.size(), order);
+  beads_.reserve(beads_.size() + order.size());
   for (const std::uint32_t k : order) beads_.push_back(unsorted[k]);
   plates_.push_back(std::move(plate));
 }
@@ -63,6 +64,7 @@ void Plates::append_runs(const Eigen::Vector3f& lower, const Eigen::Vector3f& up
 
 std::vector<float> Plates::attraction() const {
   std::vector<float> values;
+  values.reserve(beads_.size());
   for (const Record& bead : beads_) values.push_back(bead.w);
   return values;
 }

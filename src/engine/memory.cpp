@@ -1,0 +1,74 @@
+#include "engine/memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dmf::engine {
+namespace {
+
+// Bytes, measured as docs/performance.md says.
+constexpr double of_program = 10e6;
+constexpr double of_wall_bead = 48;
+constexpr double of_cell = 4;
+constexpr double of_moving_bead = 230;
+constexpr double of_baoab = 16;  ///< more, of a moving bead
+constexpr double of_body_bead = 240;
+
+}  // namespace
+
+double wall_beads(const Parameters& parameters) {
+  const Domain& domain = parameters.domain;
+  const Vector3d size = domain.size();
+  const double plates = domain.has_top_plate() ? 2 : domain.has_wall() ? 1 : 0;
+  const auto cells_along = [&](int axis) {
+    return std::max(1.0, std::round(size[axis] / parameters.wall.lattice_constant));
+  };
+  return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1);
+}
+
+MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads) {
+  const double edge = parameters.liquid.cutoff_radius + parameters.list_skin;
+  const bool baoab = parameters.integrator == Integrator::baoab;
+  MemoryNeed need;
+  need.program = of_program;
+  need.wall = wall_beads(parameters) * of_wall_bead;
+  need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
+  need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0));
+  need.bodies = body_beads * of_body_bead;
+  return need;
+}
+
+std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads) {
+  const double without = memory_need(parameters, 0, body_beads).total();
+  const double of_one = memory_need(parameters, 1, body_beads).total() - without;
+  const double fit = std::max(0.0, (parameters.max_memory * bytes_per_megabyte - without) / of_one);
+  return std::min(parameters.max_beads, static_cast<std::uint64_t>(fit));
+}
+
+void require_memory(const Parameters& parameters, double moving_beads, double body_beads) {
+  const std::uint64_t most = most_moving_beads(parameters, body_beads);
+  const double needed = memory_need(parameters, moving_beads, body_beads).total() / bytes_per_megabyte;
+  if (moving_beads <= static_cast<double>(most) && needed <= parameters.max_memory) return;
+  throw InvalidInput(
+      fmt::format("{:.0f} moving beads in all and {:.0f} of microparticles take {:.0f} MB, allowed: {} "
+                  "moving beads (max_beads "
+                  "{}, max_memory {:.0f} MB)",
+                  moving_beads, body_beads, needed, most, parameters.max_beads, parameters.max_memory));
+}
+
+Vector3d largest_domain(const Parameters& parameters) {
+  // Memory grows with the scale, so halving finds it.
+  double fits = 0, too_large = 1;
+  for (int k = 0; k < 40; ++k) {
+    const double middle = 0.5 * (fits + too_large);
+    Parameters scaled = parameters;
+    scaled.domain.upper = scaled.domain.lower + middle * parameters.domain.size();
+    const bool fit = memory_need(scaled, 0, 0).total() <= parameters.max_memory * bytes_per_megabyte;
+    (fit ? fits : too_large) = middle;
+  }
+  return fits * parameters.domain.size();
+}
+
+}  // namespace dmf::engine
