@@ -169,7 +169,7 @@ TEST(EngineThread, RosTimeNeverStepsBack) {
   });
   EXPECT_GT(last, before_reset);
   engine.advance(10);
-  EXPECT_TRUE(engine.load(saved.state, "saved").success);
+  EXPECT_TRUE(engine.load(saved.checkpoint.state, "saved").success);
   collect(engine, [&](const auto& d) {
     rises(d);
     return d.frame && d.frame->run == 2;
