@@ -101,8 +101,7 @@ class DispenseOperation : public Operation {
     const auto neck = std::min_element(goal_.path.begin(), goal_.path.end() - 1, [&](Channel a, Channel b) {
       return view.wetting.at(a) < view.wetting.at(b);
     });
-    const bool broken =
-        neck_.has_broken(view.wetting.at(*neck), view.time, kNeckQuiet * limits_.step_timeout);
+    const bool broken = neck_.has_broken(view.wetting.at(*neck), view.time, kQuiet * limits_.step_timeout);
     if (droplet && reservoir && droplet->id != reservoir->id && broken) {
       apart_ = true;
       return judge(*droplet);

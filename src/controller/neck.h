@@ -21,7 +21,8 @@ class Neck {
   double dry_since_ = -1;  ///< s, or later; below 0: nothing was seen yet
 };
 
-/// For how long the electrode under a neck has to stay dry, of what a step may take.
-constexpr double kNeckQuiet = 0.1;
+/// For how long liquid has to stay as it is wanted, of what a step may take: one reading is noise, and
+/// droplets quiver.
+constexpr double kQuiet = 0.1;
 
 }  // namespace dmf::controller

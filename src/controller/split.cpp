@@ -65,12 +65,14 @@ class SplitOperation : public Operation {
     if (obstruction_.is_final(blocked, view, limits_.step_timeout)) return fail(blocked);
     if (is_blocked_) return;
     enter(Phase::centre, view, 0, fmt::format("comes to rest on electrode {}", middle_));
+    off_centre_ = view.time;
     centre(view);
   }
 
   void centre(View& view) {
     on_ = {middle_};
-    const bool is_centred = std::abs(view.wetting.at(a_) - view.wetting.at(b_)) <= kOffCentre;
+    if (std::abs(view.wetting.at(a_) - view.wetting.at(b_)) > kOffCentre) off_centre_ = view.time;
+    const bool is_centred = view.time - off_centre_ >= kQuiet * limits_.step_timeout;
     if (!is_centred && view.time - phase_start_ < kCentring * limits_.step_timeout) return;
     enter(Phase::stretch, view, 0.1, fmt::format("stretches over electrodes {}, {} and {}", a_, middle_, b_));
     on_ = claims();
@@ -98,8 +100,7 @@ class SplitOperation : public Operation {
     on_ = {a_, b_};
     const Droplet* on_a = view.droplets.on(a_);
     const Droplet* on_b = view.droplets.on(b_);
-    const bool broken =
-        neck_.has_broken(view.wetting.at(middle_), view.time, kNeckQuiet * limits_.step_timeout);
+    const bool broken = neck_.has_broken(view.wetting.at(middle_), view.time, kQuiet * limits_.step_timeout);
     if (on_a && on_b && on_a->id != on_b->id && broken) {
       apart_ = true;
       return succeed(fmt::format("split onto electrodes {} and {}, which cover {:.2f} and {:.2f} electrodes",
@@ -124,6 +125,7 @@ class SplitOperation : public Operation {
   Channel middle_, a_, b_;
   Phase phase_ = Phase::wait_for_room;
   double phase_start_ = 0;  ///< s
+  double off_centre_ = 0;   ///< s, when it was last seen to be
   Neck neck_;
   unsigned tries_ = 0;
   std::string unreached_;  ///< why one of both was dry after the last stretching
