@@ -75,10 +75,12 @@ class Digest {
             rolling_friction, magnetic);
   }
   void add(const engine::LiquidParameters& liquid) {
-    const auto& [attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude, temperature,
-                 initial_density, bulk_density, surface_tension, viscosity, wall_distance] = liquid;
-    (*this)(attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude, temperature,
-            initial_density, bulk_density, surface_tension, viscosity, wall_distance);
+    const auto& [attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude,
+                 dissipation_exponent, dissipation_radius, temperature, initial_density, bulk_density,
+                 surface_tension, viscosity, wall_distance] = liquid;
+    (*this)(attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude, dissipation_exponent,
+            dissipation_radius, temperature, initial_density, bulk_density, surface_tension, viscosity,
+            wall_distance);
   }
   void add(const engine::WallParameters& wall) {
     const auto& [lattice_constant, layers, top_contact_angle] = wall;
@@ -137,11 +139,12 @@ std::uint64_t digest_of_microparticle_curve(const Scene& scene) {
 }  // namespace
 
 SceneContent content_of(const Scene& scene) {
-  const auto& [name, description, source, parameters, units, calibration_file, electrowetting, rail, sensing,
-               board, layout, program, default_duration, settle_time, droplets, microparticle_calibration,
-               microparticles, body_forces, schedule, patterns] = scene;
+  // Texts of files count by what was read from them. What stops a run does not say how it goes until then.
+  const auto& [name, description, source, files, parameters, units, calibration_file, electrowetting, rail,
+               sensing, board, layout, program, default_duration, settle_time, droplets,
+               microparticle_calibration, microparticles, body_forces, schedule, patterns] = scene;
   const auto& [liquid, wall, microparticle_model, domain, time_step, integrator, integrator_lambda, list_skin,
-               seed, observe_interval, angle_window, max_beads] = parameters;
+               seed, observe_interval, angle_window, max_beads, max_memory, watchdog] = parameters;
   SceneContent content;
   content["liquid"] = digest(liquid);
   content["wall"] = digest(wall);

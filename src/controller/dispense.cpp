@@ -9,6 +9,9 @@ namespace dmf::controller {
 
 namespace {
 
+/// From this fraction on an electrode has got hold of the liquid beside it.
+constexpr double kTouch = 0.15;
+
 /// Pulls a finger of liquid out of the reservoir, an electrode at a time, then switches its neck off while
 /// the reservoir pulls back (Cho, Moon and Kim 2003; Ren, Fair and Pollack 2004, Sens. Actuators B 98, 319).
 class DispenseOperation : public Operation {
@@ -50,7 +53,8 @@ class DispenseOperation : public Operation {
         why_no_room(view, {goal_.path.begin(), goal_.path.end()}, reservoir_cells(view));
     is_blocked_ = !blocked.empty();
     status_.text = blocked;
-    if (is_blocked_) return view.alone ? fail(blocked) : void();
+    if (obstruction_.is_final(blocked, view, limits_.step_timeout)) return fail(blocked);
+    if (is_blocked_) return;
     waiting_ = false;
     begin_try(view);
   }
@@ -68,10 +72,12 @@ class DispenseOperation : public Operation {
     status_.time_left = left * view.step_times.mean();
   }
 
-  /// The finger as far as it is out, and the electrode that it goes to; the reservoir itself lets go.
+  /// The finger as far as it is out, and the electrode that it goes to; the reservoir itself lets go, once
+  /// its liquid has got hold of the first: what is left in it may not reach over while it is off.
   void pull_out(View& view) {
     const Channel next = goal_.path[out_];
     on_ = {goal_.path.begin(), goal_.path.begin() + static_cast<std::ptrdiff_t>(out_) + 1};
+    if (view.wetting.at(goal_.path.front()) < kTouch) on_.insert(goal_.reservoir);
     status_.text = fmt::format("pulls liquid onto electrode {}", next);
     const bool reached = view.wetting.at(next) >= limits_.success_threshold;
     if (reached) {
@@ -95,8 +101,7 @@ class DispenseOperation : public Operation {
     const auto neck = std::min_element(goal_.path.begin(), goal_.path.end() - 1, [&](Channel a, Channel b) {
       return view.wetting.at(a) < view.wetting.at(b);
     });
-    const bool broken = neck_.has_broken(view.wetting.at(*neck), view.droplets.threshold(), view.time,
-                                         kNeckQuiet * limits_.step_timeout);
+    const bool broken = neck_.has_broken(view.wetting.at(*neck), view.time, kQuiet * limits_.step_timeout);
     if (droplet && reservoir && droplet->id != reservoir->id && broken) {
       apart_ = true;
       return judge(*droplet);
@@ -125,6 +130,7 @@ class DispenseOperation : public Operation {
   double phase_start_ = 0;  ///< s
   Neck neck_;
   unsigned tries_ = 0;
+  Obstruction obstruction_;
   bool is_blocked_ = false;
   bool apart_ = false;
 };

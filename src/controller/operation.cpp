@@ -36,6 +36,16 @@ void StepTimes::add(double seconds) {
   mean_ += (seconds - mean_) / (count_ + 1);
 }
 
+bool Obstruction::is_final(const std::string& found, const View& view, double step_timeout) {
+  constexpr double kPatience = 0.5;  // of a step: what draws back is in sight after that
+  if (found.empty() || !view.alone) {
+    since_ = -1;
+    return false;
+  }
+  if (since_ < 0) since_ = view.time;
+  return view.time - since_ >= kPatience * step_timeout;
+}
+
 void Operation::update(View& view) {
   if (!is_running()) return;
   if (view.rail_is_off) {

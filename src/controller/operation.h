@@ -42,6 +42,18 @@ struct View {
   StepTimes& step_times;
 };
 
+/// Whether to give up because something is in the way. Not while anything else is under way that may still
+/// clear it, and not at once: droplets that have just been moved still draw back from the electrodes they
+/// came from.
+class Obstruction {
+ public:
+  /// @param found  what is in the way; empty: nothing. @param step_timeout  s, that a step may take.
+  bool is_final(const std::string& found, const View& view, double step_timeout);
+
+ private:
+  double since_ = -1;  ///< s; below 0: nothing is in the way
+};
+
 enum class State { running, succeeded, failed, cancelled };
 
 /// How far an operation is.

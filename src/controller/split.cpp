@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "controller/neck.h"
 #include "controller/operations.h"
@@ -10,9 +11,15 @@ namespace dmf::controller {
 
 namespace {
 
-/// Stretches the droplet over three electrodes, then switches the middle one off, so that both ends pull the
-/// neck apart (Cho, Moon and Kim 2003, J. Microelectromech. Syst. 12, 70). What does not break is stretched
-/// again.
+/// How much more of one side than of the other the droplet may wet when it is stretched: as much more of it
+/// ends up there.
+constexpr double kOffCentre = 0.1;
+/// How long it may take to come to rest in the middle, of what a step may take.
+constexpr double kCentring = 0.5;
+
+/// Waits until the droplet lies in the middle, stretches it over three electrodes, then switches the middle
+/// one off, so that both ends pull the neck apart (Cho, Moon and Kim 2003, J. Microelectromech. Syst. 12,
+/// 70). What does not break is stretched again.
 class SplitOperation : public Operation {
  public:
   SplitOperation(const Split& goal, Traffic::Key key, View& view)
@@ -29,6 +36,8 @@ class SplitOperation : public Operation {
     switch (phase_) {
       case Phase::wait_for_room:
         return wait_for_room(view);
+      case Phase::centre:
+        return centre(view);
       case Phase::stretch:
         return stretch(view);
       case Phase::pinch:
@@ -37,7 +46,7 @@ class SplitOperation : public Operation {
   }
 
  private:
-  enum class Phase { wait_for_room, stretch, pinch };
+  enum class Phase { wait_for_room, centre, stretch, pinch };
 
   void enter(Phase phase, const View& view, double progress, const std::string& text) {
     phase_ = phase;
@@ -53,7 +62,18 @@ class SplitOperation : public Operation {
       if (view.dead.count(side)) return fail(fmt::format("electrode {} does not answer", side));
     is_blocked_ = !blocked.empty();
     status_.text = blocked;
-    if (is_blocked_) return view.alone ? fail(blocked) : void();
+    if (obstruction_.is_final(blocked, view, limits_.step_timeout)) return fail(blocked);
+    if (is_blocked_) return;
+    enter(Phase::centre, view, 0, fmt::format("comes to rest on electrode {}", middle_));
+    off_centre_ = view.time;
+    centre(view);
+  }
+
+  void centre(View& view) {
+    on_ = {middle_};
+    if (std::abs(view.wetting.at(a_) - view.wetting.at(b_)) > kOffCentre) off_centre_ = view.time;
+    const bool is_centred = view.time - off_centre_ >= kQuiet * limits_.step_timeout;
+    if (!is_centred && view.time - phase_start_ < kCentring * limits_.step_timeout) return;
     enter(Phase::stretch, view, 0.1, fmt::format("stretches over electrodes {}, {} and {}", a_, middle_, b_));
     on_ = claims();
   }
@@ -80,8 +100,7 @@ class SplitOperation : public Operation {
     on_ = {a_, b_};
     const Droplet* on_a = view.droplets.on(a_);
     const Droplet* on_b = view.droplets.on(b_);
-    const bool broken = neck_.has_broken(view.wetting.at(middle_), view.droplets.threshold(), view.time,
-                                         kNeckQuiet * limits_.step_timeout);
+    const bool broken = neck_.has_broken(view.wetting.at(middle_), view.time, kQuiet * limits_.step_timeout);
     if (on_a && on_b && on_a->id != on_b->id && broken) {
       apart_ = true;
       return succeed(fmt::format("split onto electrodes {} and {}, which cover {:.2f} and {:.2f} electrodes",
@@ -106,9 +125,11 @@ class SplitOperation : public Operation {
   Channel middle_, a_, b_;
   Phase phase_ = Phase::wait_for_room;
   double phase_start_ = 0;  ///< s
+  double off_centre_ = 0;   ///< s, when it was last seen to be
   Neck neck_;
   unsigned tries_ = 0;
   std::string unreached_;  ///< why one of both was dry after the last stretching
+  Obstruction obstruction_;
   bool is_blocked_ = false;
   bool apart_ = false;
 };

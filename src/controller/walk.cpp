@@ -67,7 +67,7 @@ Walk::Result Walk::update(View& view) {
   is_blocked_ = !blocked.empty();
   text_ = is_blocked_ ? blocked : fmt::format("waits on electrode {}", cell_);
   if (is_blocked_ && !no_answer_.empty()) text_ = no_answer_ + ", and there is no other way: " + blocked;
-  return is_blocked_ && view.alone ? Result::failed : Result::under_way;
+  return obstruction_.is_final(blocked, view, limits_.step_timeout) ? Result::failed : Result::under_way;
 }
 
 bool Walk::is_lost(const View& view) {

@@ -43,6 +43,7 @@ class Walk {
   double step_start_ = 0, try_start_ = 0;  ///< s
   double reached_ = -1;                    ///< s, when the next electrode was wetted enough; below 0: not yet
   unsigned tries_ = 0;
+  Obstruction obstruction_;
   bool is_blocked_ = false;
   std::size_t steps_done_ = 0;
   Channels on_;

@@ -44,6 +44,7 @@ class FakeBoard {
   std::map<Channel, double> amount;  ///< in pads
   std::set<Channel> stuck_off;       ///< switched on, nothing happens
   std::set<Channel> disabled;        ///< refused by the board
+  std::map<Channel, double> neck;    ///< so much stays on it while it is off, between neighbours that are on
   std::map<Channel, int> slow;       ///< answers only after so many times that it was switched on
   Rail rail{63, 1000, true};
   double time = 0;
@@ -79,8 +80,9 @@ class FakeBoard {
       for (const Channel neighbour : layout_.neighbours(channel))
         if (pulls(neighbour) && (!pulls(channel) || level(neighbour) < liquid)) towards.push_back(neighbour);
       for (const Channel neighbour : towards) {
+        const double stays = towards.size() > 1 && neck.count(channel) ? neck.at(channel) : 0;
         const double whole = pulls(channel) ? 0.4 * (liquid - level(neighbour))
-                                            : std::max(0.7 * liquid, std::min(liquid, 0.3));
+                                            : std::clamp(liquid - stays, 0.0, std::max(0.7 * liquid, 0.3));
         flow[channel] -= whole / static_cast<double>(towards.size());
         flow[neighbour] += whole / static_cast<double>(towards.size());
       }

@@ -166,6 +166,45 @@ TEST(Split, OneDropletBecomesTwoOfTheSameSize) {
   EXPECT_EQ(bench.coordinator.report(key).droplets.size(), 2u);
 }
 
+TEST(Split, ANeckThatRestsOnItsWayHasNotBroken) {
+  // A quarter of the electrode is less than what counts as a droplet on it, and it stays so for long.
+  for (const bool breaks : {true, false}) {
+    Bench bench(grid_board(5, 1));
+    bench.board.amount[2] = 2;
+    bench.board.neck[2] = 0.25;
+    bench.look();
+    const auto key = bench.coordinator.start(Split{2, {1, 3}, quick()});
+    int looks = 0;
+    bench.each_look = [&] {
+      if (++looks < 20) {
+        EXPECT_TRUE(bench.coordinator.is_running(key));
+      } else if (breaks) {
+        bench.board.neck.clear();
+      }
+    };
+    ASSERT_TRUE(bench.run(30));
+    EXPECT_EQ(bench.status(key).state, breaks ? State::succeeded : State::failed) << bench.status(key).text;
+    if (breaks) {
+      EXPECT_LT(bench.board.amount[2], 0.01);
+    } else {
+      EXPECT_TRUE(
+          holds(bench.status(key).text, "the neck over electrode 2 does not break: 25 % of it is wetted"));
+      EXPECT_EQ(bench.board.on(), (Channels{1, 3})) << "two are sensed: both are held";
+    }
+  }
+}
+
+TEST(Split, ADropletIsCentredBeforeItIsStretched) {
+  // It still lies over the electrode that it came from.
+  Bench bench(grid_board(5, 1));
+  bench.board.amount = {{1, 0.9}, {2, 1.1}};
+  bench.look();
+  const auto key = bench.coordinator.start(Split{2, {1, 3}, quick()});
+  ASSERT_TRUE(bench.run(20));
+  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
+  EXPECT_NEAR(bench.board.amount[1], bench.board.amount[3], 0.1);
+}
+
 TEST(Split, PicksAFreeOppositePairByItself) {
   Bench bench(grid_board(5, 3));
   bench.board.amount[7] = 2;
@@ -245,6 +284,39 @@ TEST(Dispense, DrawsADropletAndChecksItsVolume) {
     EXPECT_EQ(bench.board.on(), (Channels{0, 3}));
     EXPECT_LT(bench.board.amount[2], 0.3);
   }
+}
+
+TEST(Dispense, WaitsUntilADropletThatWasJustMovedHasDrawnBack) {
+  Bench bench(grid_board(6, 1));
+  bench.board.amount = {{0, 6}, {3, 0.35}, {4, 1}};
+  bench.look();
+  const auto key = bench.coordinator.start(Dispense{0, {1, 2}, 0.5, 0, quick()});
+  ASSERT_TRUE(bench.run(30));
+  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
+  EXPECT_GT(bench.board.amount[2], 0.5);
+  EXPECT_GT(bench.board.amount[4], 1.2);
+}
+
+TEST(Dispense, HoldsTheReservoirUntilItsLiquidHasGotHoldOfTheFirstElectrode) {
+  Bench bench(grid_board(5, 1));
+  bench.board.amount[0] = 6;
+  bench.board.slow[1] = 1;  // deaf to the first time: out of reach of the liquid
+  bench.look();
+  bench.coordinator.start(Dispense{0, {1, 2}, 0, 0, quick()});
+  bench.look();
+  bench.look();
+  for (int k = 0; k < 10; ++k) {
+    EXPECT_EQ(bench.board.on(), (Channels{0, 1}));
+    bench.board.step(0.1);
+    bench.look();
+  }
+  bench.board.slow.clear();
+  bool let_go = false;
+  bench.each_look = [&] {
+    let_go = let_go || bench.board.on() == Channels{1} || bench.board.on() == Channels{1, 2};
+  };
+  ASSERT_TRUE(bench.run(30));
+  EXPECT_TRUE(let_go);
 }
 
 TEST(Mix, GoesRoundTheShortestLoopAsOftenAsAsked) {
