@@ -136,6 +136,40 @@ class ForgedCheckpoints : public ::testing::Test {
     }
   }
 
+  std::uint64_t count_at(std::size_t at) const {
+    std::uint64_t count;
+    std::memcpy(&count, good_.data() + at, sizeof count);
+    return count;
+  }
+
+  /// A byte of the engine's state: anywhere, where it begins, a count, a bead's id, the droplets, where it
+  /// ends.
+  std::size_t place_in_engine(int which) {
+    const std::size_t first = engine_ + 20;  // format, step, next bead
+    const std::uint64_t beads = count_at(first);
+    const std::size_t ids = first + 5 * (8 + 16 * beads), wall = ids + 8 + 4 * beads;
+    const std::size_t droplets = wall + 8 + 4 * count_at(wall), of_beads = droplets + 20;
+    EXPECT_EQ(count_at(ids), beads);
+    EXPECT_EQ(count_at(of_beads), beads);
+    switch (which % 6) {
+      case 0:
+        return engine_ + anywhere(0, 28);
+      case 1: {
+        const std::size_t counts[] = {first,    first + 8 + 16 * beads,  ids, wall,
+                                      of_beads, of_beads + 8 + 4 * beads};
+        return counts[anywhere(0, std::size(counts))] + anywhere(0, 8);
+      }
+      case 2:
+        return ids + 8 + 4 * anywhere(0, beads);
+      case 3:
+        return droplets + 4 * anywhere(0, (28 + 4 * beads + 60) / 4);
+      case 4:
+        return end_ - 1 - anywhere(0, 64 + 3 * (8 + 16 * 313) + 2000);
+      default:
+        return engine_ + anywhere(0, end_ - engine_);
+    }
+  }
+
   const Scene scene_ = parse_scene(kScene, "scene.yaml");
   Experiment chip_{scene_, {1, "auto"}};
   fs::path root_;
@@ -204,13 +238,8 @@ TEST_F(ForgedCheckpoints, AnEngineStateThatWasForgedIsRefusedOrGoesOnOrStops) {
   ::getrusage(RUSAGE_SELF, &before);
   for (int mutation = 0; mutation < 450; ++mutation) {
     std::string forged = good_.substr(0, end_);
-    // The engine's first and last bytes hold most of its counts, the middle beads and a profile.
-    const std::size_t size = end_ - engine_;
-    std::size_t at = mutation % 3 == 0 ? anywhere(0, std::min<std::size_t>(size, 64)) : anywhere(0, size);
-    if (mutation % 3 == 1) at = size - 1 - at % std::min<std::size_t>(size, 64 + 3 * 16 * 320);
-    at += engine_;
-    if (mutation % 4 != 0) at -= (at - engine_) % 4;
-    switch (mutation / 3 % 5) {
+    std::size_t at = place_in_engine(mutation);
+    switch (mutation / 6 % 5) {
       case 0:
         forged[at] ^= static_cast<char>(1 << anywhere(0, 8));
         break;
