@@ -1,7 +1,7 @@
 #!/bin/bash
 # From nothing to a recorded run: installs what is missing, builds, starts a master and the chip on loopback, lets a
 # controller carry a microparticle with a droplet to a target electrode and leave it there, by service calls alone,
-# records everything, and ends with a summary and a picture.
+# records everything, and ends with a summary, a picture, and the proof that the recording is the run.
 # usage: scripts/demo.sh [--rviz] [--out DIR] [--port PORT] [--scene SCENE] [--target CHANNEL] [--seed SEED]
 #   --rviz    look at it while it runs
 #   --out     where bag, picture and logs go; default out/demo in this checkout
@@ -63,7 +63,7 @@ need_space "$out" 500
 asked_port="$port"
 port=$(free_port "$asked_port") || die "port $asked_port of 127.0.0.1 is taken; leave out --port to use a free one"
 
-"$root/scripts/build.sh" chip dmf_sim_generate_messages
+"$root/scripts/build.sh" chip resimulate dmf_sim_generate_messages
 use_build "$(build_dir)"
 loopback_only
 export ROS_MASTER_URI="http://127.0.0.1:$port"
@@ -131,3 +131,6 @@ stop "$chip"  # closes the bag
 [ -f "$bag" ] || fail "nothing was recorded" "$out/log/chip.txt"
 rosrun dmf_sim summarize_run.py "$bag" --picture "$out/demo.png" ${target:+--target "$target"} ||
   die "the bag $bag could not be summarized"
+# The bag is all that it takes to have the run again. Its first steps are enough to show that, in seconds.
+echo "computed again from the bag, its first 2000 steps (all of it: rosrun dmf_sim resimulate $bag):"
+rosrun dmf_sim resimulate --quiet --run 0 --until 2000 "$bag" || die "the run is not the one in $bag"

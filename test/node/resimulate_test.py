@@ -18,56 +18,9 @@ from dmf_sim.msg import ChipState
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from chip_client import Chip, Listener  # noqa: E402
+from processes import ROOT, chip, recorder, resimulate, wait_until_recorded  # noqa: E402
 
-ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", ".."))
 RC = 1e-5  # m, one r_c of the test's scene
-
-
-class Process:
-    """A program that ends with the test."""
-
-    def __init__(self, *arguments, log=None):
-        self._log = open(log, "w") if log else subprocess.DEVNULL
-        self._process = subprocess.Popen(arguments, stdout=self._log, stderr=subprocess.STDOUT)
-        self.pid = self._process.pid
-        atexit.register(self.stop)
-
-    def stop(self, how=signal.SIGINT):
-        if self._process.poll() is None:
-            self._process.send_signal(how)
-        return self._process.wait(40)
-
-
-def executable(package, name):
-    """The program itself: signals for it must not end at rosrun."""
-    path = subprocess.run(["catkin_find", "--first-only", "--libexec", package, name], capture_output=True, text=True,
-                          check=True).stdout.strip()
-    return path or shutil.which(name)
-
-
-def chip(scene, folder, *arguments):
-    return Process(executable("dmf_sim", "chip"), "__name:=chip", f"_scene:={scene}", "_threads:=1",
-                   f"_checkpoint_dir:={folder}/checkpoints", *arguments)
-
-
-def recorder(bag, *arguments):
-    return Process(executable("rosbag", "record"), "--all", "--exclude", "/clock", "-O", bag, *arguments)
-
-
-def wait_until_recorded(client):
-    """The recorder listens to the chip."""
-    until = time.monotonic() + 30
-    while not client.record_checkpoint().success:
-        if time.monotonic() > until:
-            raise AssertionError("the recorder never listened")
-        time.sleep(0.1)
-
-
-def resimulate(*arguments):
-    """Exit status and text. There are no scenes, calibrations and boards for it but those of the bag."""
-    done = subprocess.run(["rosrun", "dmf_sim", "resimulate", *arguments], capture_output=True, text=True, timeout=100,
-                          check=False, env={**os.environ, "DMF_SIM_CONFIG": "/nonexistent"})
-    return done.returncode, done.stdout + done.stderr
 
 
 def accept(reply):

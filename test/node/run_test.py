@@ -135,7 +135,7 @@ class RunTest(unittest.TestCase):
 
     def test_diagnostics_are_well(self):
         report = Listener("/diagnostics", DiagnosticArray).wait()
-        self.assertEqual([s.level for s in report.status], [DiagnosticStatus.OK] * 3, report)
+        self.assertEqual([s.level for s in report.status], [DiagnosticStatus.OK] * 4, report)
         self.assertEqual(report.status[0].name, "chip: engine")
 
 

@@ -225,6 +225,83 @@ TEST(EngineThread, ARestoredRunGoesOnWithTheSameBits) {
   EXPECT_EQ(told.back().commands[0].run, 1u);
 }
 
+std::uint64_t hash_of(const chip::Experiment& experiment) {
+  engine::ObserveRequest request;
+  request.hash = true;
+  return experiment.observe(request)->state_hash.value();
+}
+
+/// All hashes up to the delivery in which `enough` is true.
+template <class Enough>
+std::vector<StateHashNote> collect_hashes(EngineThread& engine, const Enough& enough) {
+  std::vector<StateHashNote> hashes;
+  for (const Outbox::Delivery& delivery : collect(engine, enough)) {
+    hashes.insert(hashes.end(), delivery.hashes.begin(), delivery.hashes.end());
+  }
+  return hashes;
+}
+
+TEST(EngineThread, HashesAreThoseOfSteppingByHandAtEveryMultipleOfTheInterval) {
+  const auto by_hand = tiny_experiment();
+  chip::HashChain chain(chip::fingerprint(by_hand->scene().files), 7, 20);
+  std::vector<chip::StateRecord> expected{chain.add(0, hash_of(*by_hand), by_hand->history())};
+  by_hand->apply(chip::SetHv{63, 1000, true});
+  for (int step = 1; step <= 50; ++step) {
+    by_hand->step();
+    if (step % 20 == 0)
+      expected.push_back(chain.add(by_hand->steps(), hash_of(*by_hand), by_hand->history()));
+  }
+
+  EngineSettings settings = paused();
+  settings.hash_interval = 20;
+  EngineThread engine(tiny_experiment(), settings);
+  engine.apply(chip::SetHv{63, 1000, true});
+  engine.advance(50);
+  const auto hashes =
+      collect_hashes(engine, [](const auto& d) { return d.frame && d.frame->snapshot->step == 50; });
+  ASSERT_EQ(hashes.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(hashes[i].record.step, 20 * i);
+    EXPECT_EQ(hashes[i].record.index, i);
+    EXPECT_EQ(hashes[i].record.commands, expected[i].commands);
+    EXPECT_EQ(hashes[i].record.hash, expected[i].hash);
+    EXPECT_EQ(hashes[i].record.chain, expected[i].chain);
+  }
+}
+
+TEST(EngineThread, ARunIsHashedWhenItBeginsAndWhenItIsPaused) {
+  EngineSettings settings;
+  settings.hash_interval = 1'000'000;
+  EngineThread engine(tiny_experiment(), settings);
+  while (engine.inspect(false)->snapshot->step < 10) std::this_thread::sleep_for(1ms);
+  const std::uint64_t held = engine.pause().step;
+  const auto hash = engine.inspect(true)->snapshot->state_hash;
+  const SavedRun saved = engine.save();
+  engine.apply(chip::Reset{});
+  engine.load(saved.state, "saved");
+  const auto hashes = collect_hashes(engine, [](const auto& d) { return has_event(d, "checkpoint_loaded"); });
+  ASSERT_EQ(hashes.size(), 4u);
+  EXPECT_EQ(hashes[0].record.step, 0u);
+  EXPECT_EQ(hashes[1].record.step, held);
+  EXPECT_EQ(hashes[1].record.hash, hash);
+  EXPECT_EQ(hashes[2].run, 1u);
+  EXPECT_EQ(hashes[2].record.hash, hashes[0].record.hash) << "the scene's start";
+  EXPECT_EQ(hashes[2].record.commands, 1u) << "the reset";
+  EXPECT_EQ(hashes[3].run, 2u);
+  EXPECT_EQ(hashes[3].record.index, 0u);
+  EXPECT_EQ(hashes[3].record.hash, hash);
+}
+
+TEST(EngineThread, WithoutAnIntervalThereAreNoHashes) {
+  EngineSettings settings = paused();
+  settings.hash_interval = 0;
+  EngineThread engine(tiny_experiment(), settings);
+  engine.advance(200);
+  EXPECT_TRUE(collect_hashes(engine, [](const auto& d) {
+                return d.frame && d.frame->snapshot->step == 200;
+              }).empty());
+}
+
 TEST(EngineThread, RefusesBytesThatAreNoState) {
   EngineThread engine(tiny_experiment(), paused());
   engine.advance(10);
