@@ -34,13 +34,13 @@ TEST(Limits, ASceneMayAskForNoMoreThanItsMemory) {
       holds(refusal([] { parse_scene("domain: {lower: [0, 0, 0], upper: [4000, 4000, 62.5]}", "s"); }),
             "domain: 4000 x 4000 x 62.5 r_c"));
   EXPECT_TRUE(holds(refusal([] { parse("max_memory: 1"); }), "max_memory: 1, allowed: 10 to 1000000 (MB)"));
-  const Scene scene = parse("max_memory: 20\ndroplets: [{center: [0, 0], radius: 9}]");
-  EXPECT_TRUE(holds(refusal([&] { Experiment(scene, {1, "auto"}); }), "max_memory 20 MB"));
+  const Scene scene = parse("max_memory: 12\ndroplets: [{center: [0, 0], radius: 9}]");
+  EXPECT_TRUE(holds(refusal([&] { Experiment(scene, {1, "auto"}); }), "max_memory 12 MB"));
 }
 
 TEST(Limits, NumbersBeyondAllMeasureAreRefusedAndNotTried) {
-  EXPECT_TRUE(
-      holds(refusal([] { parse("droplets: [{center: [0, 0], radius: 1e9}]"); }), "radius: allowed up to"));
+  EXPECT_TRUE(holds(refusal([] { parse("droplets: [{center: [0, 0], radius: 1e9}]"); }),
+                    "radius 1e+07 mm (1e+09 r_c): allowed up to"));
   EXPECT_TRUE(holds(refusal([] {
                       parse_scene(
                           "domain: {lower: [-20, -10, 0], upper: [20, 10, 5], sides: {z: plates}}\n"
@@ -98,7 +98,7 @@ TEST(Limits, WhatIsEchoedIsNotCutWithinACharacter) {
 }
 
 TEST(Limits, DispensingEndsWhereTheMemoryDoes) {
-  Scene scene = parse("max_memory: 12");
+  const Scene scene = parse("max_memory: 11");
   Experiment experiment(scene, {1, "auto"});
   const std::uint64_t most = engine::most_moving_beads(scene.parameters, 0);
   Reply reply;
@@ -116,11 +116,12 @@ TEST(Limits, DispensingEndsWhereTheMemoryDoes) {
   EXPECT_NO_THROW(experiment.step());
 }
 
+// The first look is the worst: the lattice on which droplets are placed has just dissolved.
 TEST(ShippedScenes, DoNotTripTheWatchdog) {
   for (const auto& entry : std::filesystem::directory_iterator(DMF_SOURCE_DIR "/config/scenes")) {
     const Scene scene = load_scene(entry.path().string());
     Experiment experiment(scene, {1, "auto"});
-    EXPECT_NO_THROW(while (experiment.steps() < 2 * scene.parameters.observe_interval) experiment.step())
+    EXPECT_NO_THROW(while (experiment.steps() < scene.parameters.observe_interval) experiment.step())
         << scene.name;
   }
 }
