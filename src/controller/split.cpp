@@ -14,7 +14,7 @@ namespace {
 /// How much more of one side than of the other the droplet may wet when it is stretched: as much more of it
 /// ends up there.
 constexpr double kOffCentre = 0.1;
-/// How long it may take to come to rest in the middle, of what a step may take.
+/// How long it may take to lie in the middle, of what a step may take.
 constexpr double kCentring = 0.5;
 
 /// Waits until the droplet lies in the middle, stretches it over three electrodes, then switches the middle
@@ -64,14 +64,18 @@ class SplitOperation : public Operation {
     status_.text = blocked;
     if (obstruction_.is_final(blocked, view, limits_.step_timeout)) return fail(blocked);
     if (is_blocked_) return;
-    enter(Phase::centre, view, 0, fmt::format("comes to rest on electrode {}", middle_));
+    enter(Phase::centre, view, 0, fmt::format("is centred on electrode {}", middle_));
     off_centre_ = view.time;
     centre(view);
   }
 
+  /// The middle alone draws the droplet in slowly: the side that has less helps.
   void centre(View& view) {
+    const double lead = view.wetting.at(a_) - view.wetting.at(b_);
+    const bool is_off_centre = std::abs(lead) > kOffCentre;
+    if (is_off_centre) off_centre_ = view.time;
     on_ = {middle_};
-    if (std::abs(view.wetting.at(a_) - view.wetting.at(b_)) > kOffCentre) off_centre_ = view.time;
+    if (is_off_centre) on_.insert(lead > 0 ? b_ : a_);
     const bool is_centred = view.time - off_centre_ >= kQuiet * limits_.step_timeout;
     if (!is_centred && view.time - phase_start_ < kCentring * limits_.step_timeout) return;
     enter(Phase::stretch, view, 0.1, fmt::format("stretches over electrodes {}, {} and {}", a_, middle_, b_));

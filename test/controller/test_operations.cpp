@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "fake_board.h"
 #include "refusal.h"
 
@@ -194,15 +196,25 @@ TEST(Split, ANeckThatRestsOnItsWayHasNotBroken) {
   }
 }
 
-TEST(Split, ADropletIsCentredBeforeItIsStretched) {
-  // It still lies over the electrode that it came from.
+TEST(Split, TheDrierSideHelpsUntilTheDropletIsCentred) {
   Bench bench(grid_board(5, 1));
-  bench.board.amount = {{1, 0.9}, {2, 1.1}};
+  bench.board.stuck_off = {1, 2, 3};  // the liquid lies where the test puts it
+  bench.board.amount = {{1, 0.7}, {2, 1}, {3, 0.3}};
   bench.look();
-  const auto key = bench.coordinator.start(Split{2, {1, 3}, quick()});
-  ASSERT_TRUE(bench.run(20));
-  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
-  EXPECT_NEAR(bench.board.amount[1], bench.board.amount[3], 0.1);
+  bench.coordinator.start(Split{2, {1, 3}, {0.8, 1.9, 2, 0}});
+  const auto on_after = [&](double seconds) {
+    for (int look = 0; look < std::lround(seconds / 0.1); ++look) {
+      bench.board.time += 0.1;
+      bench.look();
+    }
+    return bench.board.on();
+  };
+  EXPECT_EQ(on_after(0.1), (Channels{2, 3}));
+  bench.board.amount = {{1, 0.4}, {2, 1}, {3, 0.6}};
+  EXPECT_EQ(on_after(0.1), (Channels{1, 2}));
+  bench.board.amount = {{1, 0.5}, {2, 1}, {3, 0.5}};
+  EXPECT_EQ(on_after(0.1), Channels{2});
+  EXPECT_EQ(on_after(0.1), (Channels{1, 2, 3})) << "a tenth of the step's time after it was off";
 }
 
 TEST(Split, PicksAFreeOppositePairByItself) {
