@@ -90,7 +90,7 @@ TEST(Limits, WhatIsEchoedIsNotCutWithinACharacter) {
   const Scene scene = parse("");
   std::string name;
   while (name.size() < 150) name += "\xc3\xa4";  // two bytes each, so that one of both cuts would split one
-  for (const std::string& shift : {"", "x"}) {
+  for (const std::string shift : {"", "x"}) {
     const std::string said = violations(LoadPattern{shift + name}, scene, load_curve(scene)).at(0);
     // JSON text must be UTF-8: the writer of events and commands refuses anything else.
     EXPECT_EQ(to_json(LoadPattern{said}).find("\xef\xbf\xbd"), std::string::npos) << said;

@@ -278,7 +278,7 @@ TEST(EngineThread, ARunIsHashedWhenItBeginsAndWhenItIsPaused) {
   const auto hash = engine.inspect(true)->snapshot->state_hash;
   const SavedRun saved = engine.save();
   engine.apply(chip::Reset{});
-  engine.load(saved.state, "saved");
+  engine.load(saved.checkpoint.state, "saved");
   const auto hashes = collect_hashes(engine, [](const auto& d) { return has_event(d, "checkpoint_loaded"); });
   ASSERT_EQ(hashes.size(), 4u);
   EXPECT_EQ(hashes[0].record.step, 0u);
