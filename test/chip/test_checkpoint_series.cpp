@@ -151,6 +151,23 @@ TEST_F(CheckpointSeriesTest, NoneThatCanBeUsedLeavesTheRunAtItsStart) {
   EXPECT_FALSE(resume(again, series("auto.nobody."), {}, note_));
 }
 
+TEST_F(CheckpointSeriesTest, TheWriterTakesNoCheckpointWhileItWritesOne) {
+  CheckpointWriter writer(series());
+  Checkpoint large = at_step(1);
+  large.state = std::string(20 << 20, 'x');  // longer than the two calls below
+  ASSERT_TRUE(writer.put(large));
+  EXPECT_TRUE(writer.busy());
+  EXPECT_FALSE(writer.put(at_step(2)));
+  writer.wait();
+  EXPECT_FALSE(writer.busy());
+  EXPECT_TRUE(writer.put(at_step(3)));
+  writer.wait();
+  const auto reports = writer.take_reports();
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0].step, 1u);
+  EXPECT_EQ(reports[1].step, 3u);
+}
+
 TEST_F(CheckpointSeriesTest, TheWriterTellsWhatBecameOfEachAndGoesOnAfterAFailure) {
   const fs::path folder = root_ / "folder";
   CheckpointWriter writer({folder, "auto.", "", Numbering::counted, 3});
