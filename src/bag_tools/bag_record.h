@@ -71,9 +71,11 @@ struct BagRecord {
 /// or holds nothing of that node.
 BagRecord read_bag(const std::string& path, const std::string& chip);
 
-/// What a run's record lacks or what was altered in it, a sentence each; empty when it is complete. Nothing
-/// is simulated for that.
-std::vector<std::string> problems(const Session& session, const RecordedRun& run);
+/// What a run's record lacks, a sentence each; empty when it is complete.
+std::vector<std::string> gaps(const Session& session, const RecordedRun& run);
+
+/// What in a record is not as the chip wrote it, a sentence each. Nothing is simulated for that.
+std::vector<std::string> alterations(const Session& session, const RecordedRun& run);
 
 /// Those of the run's first `count` commands that the record lacks, as text such as "3, 5-9"; empty: none.
 std::string missing_commands(const RecordedRun& run, std::uint32_t count);

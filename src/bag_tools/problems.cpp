@@ -90,29 +90,33 @@ chip::HashChain chain_of(const Session& session, const RecordedRun& run) {
   return {chip::fingerprint(chip::SceneFiles::recorded(session.files)), run.seed, session.hash_interval};
 }
 
-std::vector<std::string> problems(const Session& session, const RecordedRun& run) {
+std::vector<std::string> gaps(const Session& session, const RecordedRun& run) {
   std::vector<std::string> found;
   if (session.version.empty()) found.push_back("the scene is missing (~scene was not recorded)");
-  if (!session.version.empty() &&
-      chip::fingerprint(chip::SceneFiles::recorded(session.files)) != session.fingerprint)
-    found.push_back("the scene was altered: its texts are not those of its fingerprint");
   const std::string commands = missing_commands(run, run.commands_given());
   if (!commands.empty()) found.push_back(fmt::format("commands are missing: {}", commands));
-  for (const auto& [index, command] : run.told_twice) {
-    const RecordedCommand& other = run.commands.at(index);
-    found.push_back(fmt::format("the record was altered: command {} is {} at step {} and {} at step {}",
-                                index, other.json, other.step, command.json, command.step));
-  }
   if (run.hashes.empty()) {
     found.push_back("there are no state hashes (~hash_interval was 0, or ~run_record was not recorded)");
     return found;
   }
   const std::string hashes = missing(run.hashes, run.hashes.rbegin()->first + 1);
   if (!hashes.empty()) found.push_back(fmt::format("state hashes are missing: {}", hashes));
+  return found;
+}
+
+std::vector<std::string> alterations(const Session& session, const RecordedRun& run) {
+  std::vector<std::string> found;
+  if (session.version.empty()) return found;  // told as missing
+  if (chip::fingerprint(chip::SceneFiles::recorded(session.files)) != session.fingerprint)
+    found.push_back("the texts of the scene are not those of its fingerprint");
+  for (const auto& [index, command] : run.told_twice) {
+    const RecordedCommand& other = run.commands.at(index);
+    found.push_back(fmt::format("command {} is {} at step {} and {} at step {}", index, other.json,
+                                other.step, command.json, command.step));
+  }
   if (session.hash_interval > 0) {
-    const std::string altered = broken_link(session, run);
-    if (!altered.empty())
-      found.push_back(fmt::format("the record was altered, the hash chain does not hold: {}", altered));
+    const std::string where = broken_link(session, run);
+    if (!where.empty()) found.push_back(fmt::format("the hash chain does not hold: {}", where));
   }
   return found;
 }

@@ -57,9 +57,11 @@ std::string describe(const Session& session, const RecordedRun& run, bool list) 
                                            checkpoint.name.empty() ? "" : ", " + checkpoint.name));
   }
   if (run.fault) text += line("halted", fmt::format("step {}: {}", run.fault->step, run.fault->message));
-  const std::vector<std::string> wrong = problems(session, run);
-  for (const std::string& problem : wrong) text += line("incomplete", problem);
-  if (wrong.empty()) text += line("complete", "scene, commands and state hashes, and the hash chain holds");
+  const std::vector<std::string> missing = gaps(session, run), altered = alterations(session, run);
+  for (const std::string& gap : missing) text += line("incomplete", gap);
+  for (const std::string& alteration : altered) text += line("altered", alteration);
+  if (missing.empty() && altered.empty())
+    text += line("complete", "scene, commands and state hashes, and the hash chain holds");
   return text;
 }
 

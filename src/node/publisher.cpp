@@ -43,7 +43,7 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
     : engine_(engine),
       context_(context),
       memory_(memory),
-      run_record_(private_handle),
+      run_record_(private_handle, hash_interval > 0),
       clock_watch_(handle, [this](const std::string& other) { announce_clock(other); }) {
   clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kStateQueue);
   diagnostics_ = handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kStateQueue);

@@ -12,12 +12,14 @@ constexpr std::size_t kKept = 10000;  // hashes, 1 MB; each stands for all befor
 
 }  // namespace
 
-RunRecordTopic::RunRecordTopic(ros::NodeHandle& private_handle) {
+RunRecordTopic::RunRecordTopic(ros::NodeHandle& private_handle, bool wanted) : wanted_(wanted) {
   publisher_ = private_handle.advertise<dmf_sim::RunRecord>(
       "run_record", kQueue, [this](const ros::SingleSubscriberPublisher& subscriber) { greet(subscriber); });
 }
 
-void RunRecordTopic::add(const dmf_sim::Command& command) { waiting_.push_back(command); }
+void RunRecordTopic::add(const dmf_sim::Command& command) {
+  if (wanted_) waiting_.push_back(command);
+}
 
 void RunRecordTopic::publish(dmf_sim::RunRecord message) {
   const dmf_sim::StateHash& hash = message.hashes.back();

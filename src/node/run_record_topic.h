@@ -13,7 +13,8 @@ namespace dmf::node {
 /// each hash and command: recorders have room for a hundred that come at once.
 class RunRecordTopic {
  public:
-  explicit RunRecordTopic(ros::NodeHandle& private_handle);
+  /// @param wanted  false: there will be no hashes, so nothing is kept for them.
+  RunRecordTopic(ros::NodeHandle& private_handle, bool wanted);
 
   /// Kept until a hash counts it.
   void add(const dmf_sim::Command& command);
@@ -23,6 +24,7 @@ class RunRecordTopic {
  private:
   void greet(const ros::SingleSubscriberPublisher& subscriber);
 
+  bool wanted_;
   std::mutex mutex_;        ///< the topic is published to, and the run so far changed, under it
   dmf_sim::RunRecord run_;  ///< its header and commands
   std::deque<dmf_sim::StateHash> hashes_;  ///< of the run, the newest

@@ -178,6 +178,10 @@ class ResimulateTest(unittest.TestCase):
         self.assertIn(f"differs first at step {step}, equal up to step", text)
         self.assertIn("the hash chain does not hold", text)
         self.assertEqual(resimulate(self.with_commands(alter), "--info")[0], 1)
+        saved = self.first_checkpoint("middle")
+        status, text = resimulate(self.with_commands(alter), "--run", "0", "--from", str(saved))
+        self.assertEqual(status, 1, text)
+        self.assertIn(f'"channels":[1]}} at step {self.commands[0, index].step} in the checkpoint of step {saved}', text)
 
     def test_a_command_that_is_told_in_two_ways_is_found(self):
         def alter(commands):
@@ -215,8 +219,12 @@ class ResimulateTest(unittest.TestCase):
             return message
         status, text = resimulate(self.rewritten(alter), "--run", "0")
         self.assertEqual(status, 1, text)
-        self.assertIn("the scene was altered", text)
+        self.assertIn("altered: the texts of the scene", text)
         self.assertIn("differs first at step 0", text)
+        saved = self.first_checkpoint("middle")  # from where the alteration has no effect any more
+        status, text = resimulate(self.rewritten(alter), "--run", "0", "--from", str(saved))
+        self.assertEqual(status, 1, text)
+        self.assertIn("altered: the texts of the scene", text)
 
     def test_an_altered_hash_is_found(self):
         def alter(topic, message):
