@@ -11,8 +11,8 @@ namespace dmf::controller {
 
 namespace {
 
-/// How much more of one side than of the other the droplet may wet when it is stretched: as much more of it
-/// ends up there.
+/// How much more of one side than of the other the droplet may wet when it is stretched: what lies there ends
+/// up there.
 constexpr double kOffCentre = 0.1;
 /// How long it may take to lie in the middle, of what a step may take.
 constexpr double kCentring = 0.5;

@@ -107,6 +107,7 @@ Walk::Result Walk::step(View& view) {
   const double tried_for = view.time - try_start_;
   if (pulling_back_) {
     if (tried_for >= kPullBack * limits_.step_timeout) {
+      if (tries_ > limits_.retries) return give_up_step(view);
       pulling_back_ = false;
       try_start_ = view.time;
       ++tries_;
@@ -114,7 +115,8 @@ Walk::Result Walk::step(View& view) {
   } else if (view.disabled.count(goal_)) {
     return give_up_step(view);
   } else if (tried_for >= limits_.step_timeout) {
-    if (tries_ > limits_.retries) return give_up_step(view);
+    // A droplet that nothing holds may drift back by itself. Whether it is held there, pulling it back tells.
+    if (tries_ > limits_.retries && !has_gone_back(view)) return give_up_step(view);
     pulling_back_ = true;
     try_start_ = view.time;
   }
@@ -122,12 +124,16 @@ Walk::Result Walk::step(View& view) {
   return Result::under_way;
 }
 
+bool Walk::has_gone_back(const View& view) const {
+  return last_cell_ != cell_ && view.wetting.at(last_cell_) >= view.wetting.at(cell_);
+}
+
 Walk::Result Walk::give_up_step(View& view) {
-  // Liquid that went back to an electrode which is off is held there: the next one is not at fault.
-  const bool is_held = last_cell_ != cell_ && view.wetting.at(last_cell_) >= view.wetting.at(cell_);
+  // Liquid that stays on an electrode which is off is held there: the next one is not at fault.
   const NoAnswer no_answer =
-      is_held ? NoAnswer{fmt::format("electrode {} does not let go of the droplet: stuck on", last_cell_)}
-              : why_no_answer(view, cell_, goal_, std::min(1.0, wetted_area_ / view.layout.area(cell_)));
+      has_gone_back(view)
+          ? NoAnswer{fmt::format("electrode {} does not let go of the droplet: stuck on", last_cell_)}
+          : why_no_answer(view, cell_, goal_, std::min(1.0, wetted_area_ / view.layout.area(cell_)));
   text_ = no_answer_ = no_answer.reason;
   if (no_answer.is_electrode) view.dead.insert(goal_);
   if (!no_answer.is_electrode || as_given_) return Result::failed;

@@ -30,6 +30,8 @@ class Walk {
  private:
   bool is_lost(const View& view);
   Result step(View& view);
+  /// The electrode that it came from is wetted more than the one it is to be on.
+  bool has_gone_back(const View& view) const;
   Result give_up_step(View& view);
 
   Traffic::Key key_;

@@ -83,6 +83,22 @@ TEST(Move, AnElectrodeThatDoesNotAnswerIsGoneRound) {
   EXPECT_EQ(bench.coordinator.dead(), Channels{2});
 }
 
+TEST(Move, ADropletThatDriftsBackFromADeadElectrodeIsNotTakenForHeld) {
+  Bench bench(grid_board(4, 2));
+  bench.board.amount[0] = 1;
+  bench.board.stuck_off = {2};
+  bench.look();
+  bench.each_look = [&] {  // nothing holds it while only the dead one is on
+    if (bench.board.on() == Channels{2}) bench.board.amount = {{0, 0.6}, {1, 0.4}};
+  };
+  Limits no_retry = quick();
+  no_retry.retries = 0;
+  const auto key = bench.coordinator.start(Move{0, 3, {}, no_retry});
+  ASSERT_TRUE(bench.run(40));
+  EXPECT_EQ(bench.status(key).state, State::succeeded) << bench.status(key).text;
+  EXPECT_EQ(bench.coordinator.dead(), Channels{2});
+}
+
 TEST(Move, WithoutAWayRoundItIsToldWhichElectrodeIsAtFault) {
   for (const bool given : {false, true}) {
     Bench bench(grid_board(4, 1));

@@ -65,7 +65,8 @@ class ControllerOperationsTest(unittest.TestCase):
         halves = self.volumes()
         self.assertEqual(set(halves), {3, 5, 6})
         self.assertAlmostEqual((halves[3] + halves[5]) / merged[4], 1, delta=0.02)
-        self.assertGreater(min(halves[3], halves[5]), 0.4 * merged[4])
+        # The neck's liquid, up to 0.3 of two electrodes, goes to either end, and a tenth may lie off the middle.
+        self.assertGreater(min(halves[3], halves[5]), 0.35 * merged[4])
 
 
 if __name__ == "__main__":
