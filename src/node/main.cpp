@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <thread>
 
 #include "chip/scene.h"
 #include "engine/wait_policy.h"
@@ -35,9 +36,12 @@ int main(int argc, char** argv) {
   try {
     const dmf::node::Options options = dmf::node::load_options(ros::NodeHandle("~"));
     const dmf::chip::Scene scene = dmf::chip::load_scene(options.scene);
-    // Beside the run: stacks and heaps of some twenty threads, queues, messages on their way.
-    constexpr double kBeside = 1000;  // MB
-    dmf::node::limit_memory(scene.parameters.max_memory + kBeside);
+    // Beside the run: stacks and heaps of some twenty threads, queues, messages on their way; and of each
+    // thread of the engine.
+    constexpr double kBeside = 1000, kPerThread = 100;  // MB
+    const int threads = options.execution.threads > 0 ? options.execution.threads
+                                                      : static_cast<int>(std::thread::hardware_concurrency());
+    dmf::node::limit_memory(scene.parameters.max_memory + kBeside + kPerThread * threads);
     const dmf::node::Node node(options, scene);
     while (ros::ok() && !asked_to_end) ros::WallDuration(0.05).sleep();
   } catch (const std::exception& error) {
