@@ -9,7 +9,7 @@ namespace {
 
 TEST(Protocols, WorkOnFullResolutionOverSeeds) {
   const auto trials = protocol_trials(false);
-  const int seeds[] = {501, 502};
+  const int seeds[] = {1, 2};
   ResultTable table(fresh_table("protocols"), {"worked"});
   const auto key = [](const ProtocolTrial& trial, int seed) {
     return fmt::format("{} seed={}", trial.name, seed);
@@ -33,7 +33,8 @@ TEST(Protocols, WorkOnFullResolutionOverSeeds) {
     EXPECT_GT(worked, 0) << trial.name << " has worked with no seed";
     all += worked;
   }
-  // A droplet that is let go between two electrodes may need more tries than a protocol has: seldom.
+  // All worked when this was written (docs/validation.md). A droplet that is let go between two electrodes
+  // may need more tries than a protocol has: seldom.
   EXPECT_GE(all, 0.9 * static_cast<double>(trials.size() * std::size(seeds)));
 }
 
