@@ -42,7 +42,7 @@ struct EngineSettings {
   std::uint32_t first_run = 0;                 ///< run number of the first run
   std::uint64_t ros_start = RunClock::kStart;  ///< ns of ROS time at which it begins
   std::string resumed_from;                    ///< what it goes on from, for people; empty: the scene's start
-  std::uint32_t hash_interval = 100;        ///< steps between two hashes of the state; 0: none at all
+  std::uint32_t hash_interval = 100;           ///< steps between two hashes of the state; 0: none at all
 };
 
 /// Whether something was done, and the sentence for whoever asked.

@@ -14,8 +14,8 @@ namespace dmf::node {
 
 /// What the engine thread leaves for the publisher thread. The engine never waits here: a frame that was not
 /// taken yet is replaced by the newer one, and so are a reading and the clock. Commands, events and state
-/// hashes are kept, in order, until taken; when nobody takes them for long, those after the first kMostWaiting
-/// are counted and no longer kept.
+/// hashes are kept, in order, until taken; when nobody takes them for long, those after the first
+/// kMostWaiting are counted and no longer kept.
 class Outbox {
  public:
   static constexpr std::size_t kMostWaiting = 100'000;  ///< commands, events, and hashes

@@ -213,8 +213,7 @@ bool Services::record_checkpoint(std_srvs::Trigger::Request&, std_srvs::Trigger:
   response.success = run.outcome.success;
   response.message = run.outcome.message;
   if (!run.outcome.success) return true;
-  response.message =
-      fmt::format("step {}, state hash {}", checkpoint.step, hash_text(checkpoint.state_hash));
+  response.message = fmt::format("step {}, state hash {}", checkpoint.step, hash_text(checkpoint.state_hash));
   topic_.publish(checkpoint, checkpoint.run, checkpoint.ros_time, "");
   return true;
 }
