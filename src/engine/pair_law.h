@@ -21,7 +21,7 @@ enum class DissipativeWeight {
 /// force has no potential (Warren 2013).
 template <class Real>
 struct MdpdLaw {
-  Real attraction;                  ///< A, < 0
+  Real attraction;                  ///< A, < 0; of plain DPD a >= 0
   Real repulsion;                   ///< B, >= 0
   Real inverse_cutoff_radius;       ///< 1 / r_c
   Real inverse_repulsion_radius;    ///< 1 / r_d
