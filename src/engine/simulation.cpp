@@ -308,6 +308,8 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
     virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
     snapshot->virial = virial.total;
   }
+  if (request.stress)
+    snapshot->stress = stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.parameters);
   if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
   if (request.wetted && s.parameters.domain.has_wall())
     snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);

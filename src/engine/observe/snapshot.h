@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/microparticle.h"
+#include "engine/observe/stress_profile.h"
 #include "engine/observe/wetted_area.h"
 
 namespace dmf::engine {
@@ -42,10 +43,11 @@ struct DropletEvent {
 
 /// What can be asked of `Simulation::observe()` besides the cheap part.
 struct ObserveRequest {
-  bool beads = false;   ///< copy positions, ids and droplet of every moving bead
-  bool hash = false;    ///< hash the complete state
-  bool virial = false;  ///< stress of the conservative forces; with `beads` also bead by bead
-  bool wetted = false;  ///< which cells of the plate liquid covers
+  bool beads = false;                   ///< copy positions, ids and droplet of every moving bead
+  bool hash = false;                    ///< hash the complete state
+  bool virial = false;                  ///< stress of the conservative forces; with `beads` also bead by bead
+  bool wetted = false;                  ///< which cells of the plate liquid covers
+  std::optional<StressSlabs> stress{};  ///< stress, density and velocity slab by slab
 };
 
 /// The state of a run between two steps, as plain values that no later step changes. Reduced units.
@@ -62,6 +64,7 @@ struct Snapshot {
   std::optional<std::uint64_t> state_hash;               ///< when asked for
   std::optional<Eigen::Matrix3d> virial;  ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
   std::optional<WettedArea> wetted;       ///< of the plate, when asked for and there is one
+  std::vector<SlabStress> stress;         ///< lowest slab first; empty unless asked for
   // When beads are asked for, equally long, ordered by bead id:
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> velocities;
