@@ -15,7 +15,7 @@ if [ "${1:-}" = --bench ]; then
   [ $# -eq 1 ] || die "--bench takes no targets"
   build="$build/benchmarks"
   options=(-DDMF_BUILD_ROS=OFF -DCATKIN_ENABLE_TESTING=OFF -DDMF_BUILD_BENCHMARKS=ON)
-  set -- bench_step
+  set -- bench_step bench_checkpoint
 fi
 mkdir -p "$build" || die "can't create $build"
 need_space "$build" 500

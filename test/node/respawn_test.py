@@ -15,13 +15,16 @@ import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from dmf_sim.msg import Command, Event
+from actionlib import GoalStatus
+from dmf_sim.msg import Command, DropletArray, Event, MoveDropletAction, MoveDropletGoal, SensedDropletArray
 from rosgraph_msgs.msg import Clock
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from chip_client import Chip, Listener  # noqa: E402
+from controller_client import Client  # noqa: E402
 
-SCENE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../scenes/tiny_line.yaml")
+SCENES = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../scenes")
+SCENE = os.path.join(SCENES, "tiny_line.yaml")
 
 
 def pid_of(node="/chip", other_than=None, timeout=30):
@@ -218,6 +221,47 @@ class RespawnTest(unittest.TestCase):
         diagnostics.wait(lambda m: status(DiagnosticStatus.OK)(m) and m in diagnostics.messages[seen:])
         events.stop()
         diagnostics.stop()
+
+    def test_a_move_of_the_controller_goes_on_when_its_chip_comes_back(self):
+        clock = Listener("/clock", Clock)
+        self.launch(f"scene:={SCENES}/controlled_line.yaml", "paused:=false", "respawn:=true", "checkpoint_period:=0.2")
+        chip, pid = self.chip()
+        rospy.set_param("/use_sim_time", True)
+        self.started.append(subprocess.Popen(["rosrun", "dmf_sim", "chip_controller", "_step_timeout:=3"]))
+        try:
+            move = Client("move_droplet", MoveDropletAction)
+            events = Listener("/chip/events", Event)
+            sensed = Listener("/chip_controller/droplets", SensedDropletArray)
+            sensed.wait(lambda m: 0 in [d.channel for d in m.droplets])
+            handle = move.send(MoveDropletGoal(channel=0, target=3))
+            half_way = time.monotonic() + 60
+            while not any(f.progress > 0.4 for f in handle.feedback):
+                self.assertLess(time.monotonic(), half_way, handle.feedback[-1:])
+                time.sleep(0.01)
+            begun = chip.get_state(False).state
+            events.wait(lambda e: e.kind == Event.CHECKPOINT_SAVED and e.step > begun.step)
+            os.kill(pid, signal.SIGKILL)
+            killed_at = len(handle.feedback)
+            chip, pid = self.chip(other_than=pid)
+            move.wait(handle, 90)
+            result = handle.get_result()
+            self.assertEqual(handle.get_goal_status(), GoalStatus.SUCCEEDED, result.message)
+            self.assertGreater(len(handle.feedback), killed_at, "it was over before the kill")
+            # As the simulation sees it, after the kill.
+            state = chip.get_state(False).state
+            self.assertEqual(state.run, begun.run + 1)
+            target = next(e for e in chip.get_layout().layout.electrodes if e.channel == 3)
+            droplets = Listener("/chip/droplets", DropletArray)
+            seen = droplets.wait(lambda m: m.droplets)
+            droplets.stop()
+            self.assertIn(3, [channel for d in seen.droplets for channel in d.channels])
+            self.assertTrue(any(abs(d.centroid.x - target.centroid.x) < 3 * chip.get_layout().layout.length_unit
+                                for d in seen.droplets))
+            events.stop()
+        finally:
+            rospy.delete_param("/use_sim_time")
+        times = [m.clock.to_nsec() for m in clock.messages]
+        self.assertEqual(times, sorted(times), "/clock stepped back")
 
     def test_a_folder_that_cannot_be_written_stops_checkpoints_not_the_run(self):
         where = os.path.join(self.folder, "blocked")

@@ -51,7 +51,7 @@ std::vector<Case> cases() {
            {1, 2, 3, 4, 5, 6, 8},
            "Groot and Warren",
            [](double density) { return groot_warren(density, 25); }},
-          {"mdpd", engine::LiquidParameters{}, {5, 5.5, 6, 6.5, 7, 7.5, 8}, "Warren", warren}};
+          {"mdpd", engine::LiquidParameters{}, {6.1, 6.5, 7, 7.5, 8, 9, 10}, "Warren", warren}};
 }
 
 }  // namespace
