@@ -73,9 +73,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.5, 1.0));
   app.add_option("--integrator", options.integrator, "groot_warren or baoab")
       ->transform(CLI::CheckedTransformer(integrators));
-  app.add_option("--skin", options.list_skin, "how much wider than r_c the sorting cells are, r_c")
-      ->check(CLI::Range(0.05, 1.0))
-      ->capture_default_str();
+  app.add_option("--skin", options.list_skin,
+                 "how much wider than r_c the sorting cells are, r_c (default: the scene's)")
+      ->check(CLI::Range(0.05, 1.0));
   app.add_option("--calibration", options.calibration, "name, file, or lan2016")->capture_default_str();
   app.add_option("--contact", options.contact, "of microparticles with the wall: lan2016 or coulomb")
       ->transform(CLI::CheckedTransformer(contacts));

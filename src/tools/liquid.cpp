@@ -26,7 +26,7 @@ Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
   parameters.time_step = how.time_step;
   if (how.lambda > 0) parameters.integrator_lambda = how.lambda;
   parameters.integrator = how.integrator;
-  parameters.list_skin = how.list_skin;
+  if (how.list_skin > 0) parameters.list_skin = how.list_skin;
   parameters.seed = how.seed;
   parameters.liquid = how.liquid;
   return parameters;

@@ -12,8 +12,8 @@ struct LiquidRun {
   double lambda = 0;        ///< of the integrator; 0: the engine's default
   bool quick = false;       ///< 20 to 30 tau instead of 300 to 400
   engine::Integrator integrator = engine::Integrator::groot_warren;
-  double list_skin = 0.25;  ///< r_c
-  double measure = 0;       ///< tau of measuring; 0: as long as `quick` says
+  double list_skin = 0;  ///< r_c; 0: the engine's default
+  double measure = 0;    ///< tau of measuring; 0: as long as `quick` says
   engine::LiquidParameters liquid{};
 };
 

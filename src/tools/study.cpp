@@ -38,7 +38,7 @@ chip::Scene scene_for(const StudyOptions& options, const std::string& name) {
   chip::Scene scene = chip::load_scene(name);
   scene.parameters.time_step = options.time_step;
   scene.parameters.integrator = options.integrator;
-  scene.parameters.list_skin = options.list_skin;
+  if (options.list_skin > 0) scene.parameters.list_skin = options.list_skin;
   if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
   scene.parameters.microparticles.contact = options.contact;
   scene.calibration_file =

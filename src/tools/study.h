@@ -20,7 +20,7 @@ struct StudyOptions {
   double time_step = 0.01;  ///< tau
   double lambda = 0;        ///< of the integrator; 0: the engine's default
   engine::Integrator integrator = engine::Integrator::groot_warren;
-  double list_skin = 0.25;                 ///< r_c
+  double list_skin = 0;                    ///< r_c; 0: the scene's, or the engine's default
   std::string calibration = "water_like";  ///< name in config/calibration, a file, or "lan2016"
   std::string scene = "gradient_R5";       ///< crossing: which
   engine::ContactModel contact = engine::ContactModel::lan2016;  ///< studies of microparticles

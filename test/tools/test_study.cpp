@@ -27,6 +27,7 @@ TEST(Study, SceneTakesOverTheCommandLine) {
   EXPECT_EQ(scene.parameters.microparticles.contact, engine::ContactModel::coulomb);
   EXPECT_TRUE(scene.calibration_file.empty()) << "Lan's own law";
   EXPECT_EQ(scene.parameters.time_step, 0.005);
+  EXPECT_EQ(scene.parameters.list_skin, 0.45) << "the scene's own";
 }
 
 TEST(Study, OnlyPicksValuesAndRefusesOthers) {

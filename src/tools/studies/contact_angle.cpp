@@ -25,7 +25,7 @@ SessileRun sessile_run(const StudyOptions& options, double attraction, double st
   run.measure = options.quick ? 40 : 160;
   run.parameters.time_step = options.time_step;
   run.parameters.integrator = options.integrator;
-  run.parameters.list_skin = options.list_skin;
+  if (options.list_skin > 0) run.parameters.list_skin = options.list_skin;
   if (options.lambda > 0) run.parameters.integrator_lambda = options.lambda;
   return run;
 }

@@ -10,7 +10,7 @@ void study_crossing(const StudyOptions& options) {
   chip::Scene scene = chip::load_scene(options.scene);
   scene.parameters.time_step = options.time_step;
   scene.parameters.integrator = options.integrator;
-  scene.parameters.list_skin = options.list_skin;
+  if (options.list_skin > 0) scene.parameters.list_skin = options.list_skin;
   if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
   ResultTable table(options.output + "/crossing_runs.csv",
                     {"to_-30", "to_-20", "to_0", "to_30", "to_40", "ns_per_bead_step"});
