@@ -4,12 +4,14 @@
 
 #include "engine/kernels/lanes-inl.h"
 #include "engine/pair_law-inl.h"
+#include "engine/species.h"
 
 namespace dmf::engine {
 
 Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
                  const Parameters& parameters) {
-  const MdpdLaw<double> law = liquid_law(parameters.liquid, parameters.time_step);
+  const PairTable laws = pair_table(parameters);
+  const SplineShape<double> spline = spline_shape(parameters.spline);
   Virial result;
   result.of_bead.resize(beads.size());
   std::vector<Eigen::Matrix3d> of_bead(beads.size(), Eigen::Matrix3d::Zero());
@@ -24,8 +26,13 @@ Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
         }
       const double r = std::max(d.norm(), 1e-6);
       const double density_sum = double(beads.predicted[i].w) + beads.predicted[j].w;
-      const double force = HWY_NAMESPACE::weighted_force<PairForce::conservative>(law, law.attraction, r,
-                                                                                  density_sum, 0.0, 0.0);
+      const MdpdLaw<double>& law =
+          laws(liquid_species(beads.species_of(i)), liquid_species(beads.species_of(j)));
+      const double force =
+          parameters.spline.used
+              ? HWY_NAMESPACE::conservative_force_anywhere(SplineLaw<double>{law, spline}, law.attraction, r,
+                                                           density_sum)
+              : HWY_NAMESPACE::conservative_force_anywhere(law, law.attraction, r, density_sum);
       of_bead[i] += 0.5 * force / r * d * d.transpose();
     });
   for (std::size_t i = 0; i < beads.size(); ++i) {
