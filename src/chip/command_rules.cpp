@@ -57,6 +57,8 @@ class Rules {
   }
 
   void operator()(const SetWettability& command) {
+    if (engine::wall_coefficients(scene_.parameters))
+      note("pairs.liquid.wall sets what all of the wall attracts with, allowed: a scene without it");
     if (command.positions.empty()) note("positions: none given, allowed: one or more");
     check_lengths("positions", command.positions.size(), "contact angles", command.contact_angles_deg.size());
     const std::size_t longest = std::max(command.positions.size(), command.contact_angles_deg.size());

@@ -50,6 +50,9 @@ void Run::place() {
     attempt(fmt::format("microparticles[{}]", i),
             [&] { simulation->add_microparticle(scene->microparticles[i]); });
   }
+  for (std::size_t i = 0; i < scene->fills.size(); ++i) {
+    attempt(fmt::format("fills[{}]", i), [&] { simulation->fill(scene->fills[i]); });
+  }
   const engine::BodyForces& forces = scene->body_forces;
   if (!forces.gravity.isZero(0) || !forces.magnetic.isZero(0))
     attempt("body_forces", [&] { simulation->set_body_forces(forces); });

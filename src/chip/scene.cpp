@@ -9,6 +9,7 @@
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
 #include "chip/configuration.h"
+#include "chip/scene_mixture.h"
 #include "chip/scene_sections.h"
 #include "engine/yaml_reader.h"
 
@@ -97,7 +98,8 @@ Scene read_scene(SceneFiles files) {
   scene.description = root.text("description", "");
 
   scene.parameters.liquid = read_liquid(root);  // the units are matched with it
-  scene.board = read_board(root, scene);        // and a board's size decides about one r_c
+  read_mixture(root, scene.parameters);
+  scene.board = read_board(root, scene);  // and a board's size decides about one r_c
   scene.units = read_units(root, scene.parameters.liquid, scene.board);
   root.set_units(scene.units);
   read_engine(root, scene.parameters, scene.board);
@@ -108,6 +110,7 @@ Scene read_scene(SceneFiles files) {
   const bool has_layout = read_chip(root, scene);
   read_droplets(root, scene);
   read_microparticles(root, scene);
+  read_fills(root, scene);
   read_body_forces(root, scene);
 
   // Commands may name channels, angles, patterns and places: read them all, then look at each.

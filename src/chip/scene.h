@@ -63,6 +63,7 @@ struct Scene {
   double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
   double settle_time = 0;       ///< tau at rest before the scene's clock of commands starts
   std::vector<engine::DropletPlacement> droplets;
+  std::vector<engine::FillPlacement> fills;                    ///< placed last, around all others
   std::string microparticle_calibration;                       ///< of their contact angles: a name or a path
   std::vector<engine::MicroparticlePlacement> microparticles;  ///< placed after the droplets
   engine::BodyForces body_forces;                              ///< that act from the start

@@ -65,7 +65,11 @@ class Digest {
     for (const auto& point : curve.points()) (*this)(point.attraction, point.angle);
   }
   void add(const Electrode& electrode) { (*this)(electrode.channel, electrode.outline); }
-  void add(const engine::DropletPlacement& droplet) { (*this)(droplet.center, droplet.radius); }
+  void add(const engine::DropletPlacement& droplet) {
+    const auto& [center, radius, species] = droplet;
+    (*this)(center, radius);
+    if (species > 0) add(species);
+  }
   // Structured bindings name every member: what is added to one of these does not compile before somebody has
   // said here whether it counts.
   void add(const engine::MicroparticlePlacement& placement) {
@@ -114,6 +118,26 @@ class Digest {
     const auto& [interval, noise, offset, filler_permittivity] = sensing;
     (*this)(interval, noise, offset, filler_permittivity);
   }
+  void add(const engine::PairCoefficients& pair) {
+    const auto& [attraction, repulsion, random_amplitude] = pair;
+    (*this)(attraction, repulsion, random_amplitude);
+  }
+  void add(const engine::FurtherLiquid& liquid) {
+    const auto& [name, own, initial_density, bulk_density] = liquid;
+    (*this)(name, own, initial_density, bulk_density);
+  }
+  void add(const engine::PairOfSpecies& pair) {
+    const auto& [first, second, coefficients] = pair;
+    (*this)(first, second, coefficients);
+  }
+  void add(const engine::SplineParameters& spline) {
+    const auto& [used, repulsion, repulsion_radius, attraction, attraction_radius] = spline;
+    (*this)(used, repulsion, repulsion_radius, attraction, attraction_radius);
+  }
+  void add(const engine::FillPlacement& fill) {
+    const auto& [lower, upper, species] = fill;
+    (*this)(lower, upper, species);
+  }
   void add(const engine::BodyForces& forces) {
     const auto& [gravity, magnetic] = forces;
     (*this)(gravity, magnetic);
@@ -141,12 +165,18 @@ std::uint64_t digest_of_microparticle_curve(const Scene& scene) {
 SceneContent content_of(const Scene& scene) {
   // Texts of files count by what was read from them. What stops a run does not say how it goes until then.
   const auto& [name, description, source, files, parameters, units, calibration_file, electrowetting, rail,
-               sensing, board, layout, program, default_duration, settle_time, droplets,
+               sensing, board, layout, program, default_duration, settle_time, droplets, fills,
                microparticle_calibration, microparticles, body_forces, schedule, patterns] = scene;
   const auto& [liquid, wall, microparticle_model, domain, time_step, integrator, integrator_lambda, list_skin,
-               seed, observe_interval, angle_window, max_beads, max_memory, watchdog] = parameters;
+               seed, observe_interval, angle_window, max_beads, max_memory, watchdog, mixture, spline] =
+      parameters;
   SceneContent content;
   content["liquid"] = digest(liquid);
+  // What a scene does not use is no part of it: its saved runs are those of the same scene before.
+  if (const auto& [liquids, pairs] = mixture; !liquids.empty() || !pairs.empty())
+    content["species"] = digest(liquids, pairs);
+  if (spline.used) content["spline"] = digest(spline);
+  if (!fills.empty()) content["fills"] = digest(fills);
   content["wall"] = digest(wall);
   content["microparticle_model"] = digest(microparticle_model, digest_of_microparticle_curve(scene));
   content["domain"] = digest(domain);

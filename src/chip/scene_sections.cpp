@@ -11,6 +11,7 @@
 #include "chip/command_rules.h"
 #include "chip/configuration.h"
 #include "chip/polygon.h"
+#include "chip/scene_mixture.h"
 
 namespace dmf::chip {
 
@@ -390,6 +391,7 @@ void read_droplets(const YamlReader& root, Scene& scene) {
   const Domain& domain = scene.parameters.domain;
   for (const YamlReader& section : root.mappings("droplets", {0, kMaxPlaced})) {
     const auto centre = read_droplet_centre(section, scene);
+    const std::uint32_t species = read_species(section, scene.parameters);
     const bool fills = section.has("fills");
     if (fills && (section.has("radius") || section.has("volume")))
       section.report("fills", "given together with radius or volume, allowed: one of the three");
@@ -403,7 +405,7 @@ void read_droplets(const YamlReader& root, Scene& scene) {
     if (radius <= 0) continue;
     const double touching = domain.lower.z() + radius;
     const engine::DropletPlacement placement{
-        {centre[0], centre[1], centre.size() == 3 ? centre[2] : touching}, radius};
+        {centre[0], centre[1], centre.size() == 3 ? centre[2] : touching}, radius, species};
     for (const std::string& violation : violations(placement, scene)) section.report("", violation);
     for (const engine::DropletPlacement& other : scene.droplets) {
       // The engine wants r_c between beads of two droplets.

@@ -2,7 +2,9 @@
 
 namespace dmf::engine {
 
-void Beads::add(const Record& at, const Record& moving, std::uint32_t bead_id) {
+void Beads::add(const Record& at, const Record& moving, std::uint32_t bead_id, std::uint8_t of_species) {
+  if (of_species > 0 && species.empty()) species.assign(size(), 0);
+  if (of_species > 0 || !species.empty()) species.push_back(of_species);
   position.push_back(at);
   predicted.push_back(moving);
   velocity.push_back(moving);
@@ -32,6 +34,11 @@ void Beads::reorder(const std::vector<std::uint32_t>& order) {
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t k = 0; k < count; ++k) scratch_id_[k] = id[order[k]];
   id.swap(scratch_id_);
+  if (species.empty()) return;
+  scratch_species_.resize(order.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t k = 0; k < count; ++k) scratch_species_[k] = species[order[k]];
+  species.swap(scratch_species_);
 }
 
 }  // namespace dmf::engine

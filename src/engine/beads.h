@@ -47,18 +47,21 @@ using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 /// With BAOAB the force pass runs for one part of the forces at a time and writes random or force; the
 /// thermostat writes predicted.xyz and velocity between two of them.
 struct Beads {
-  AlignedVector<Record> position;   ///< x, y, z; w: bits of the bead's noise key of this step
+  AlignedVector<Record> position;   ///< x, y, z; w: bits of the bead's noise key of this step (species.h)
   AlignedVector<Record> predicted;  ///< velocity that the pair forces see; w: density rho
   AlignedVector<Record> velocity;   ///< at the end of a step, with BAOAB half a kick before it; w unused
   AlignedVector<Record> force;      ///< at the end of a step, with BAOAB conservative ones only; w unused
   AlignedVector<Record> listed;     ///< position when beads were sorted; w unused
   AlignedVector<Record> random;     ///< sum of the random pair forces: scratch of a BAOAB step
   std::vector<std::uint32_t> id;
+  std::vector<std::uint8_t> species;  ///< number of the liquid; empty while all are the first one
 
   std::size_t size() const { return id.size(); }
 
+  std::uint8_t species_of(std::size_t bead) const { return species.empty() ? 0 : species[bead]; }
+
   /// Appends a bead at rest forces. Call `Pairs::invalidate()` afterwards.
-  void add(const Record& at, const Record& moving, std::uint32_t bead_id);
+  void add(const Record& at, const Record& moving, std::uint32_t bead_id, std::uint8_t of_species = 0);
 
   /// Makes room for `count` more beads, so that adding them one by one does not double the arrays.
   void reserve_more(std::size_t count);
@@ -69,6 +72,7 @@ struct Beads {
 
  private:
   std::vector<std::uint32_t> scratch_id_;
+  std::vector<std::uint8_t> scratch_species_;
 };
 
 }  // namespace dmf::engine

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "engine/parameters.h"
 
 namespace dmf::engine {
@@ -7,8 +9,15 @@ namespace dmf::engine {
 /// `radius`. Between two plates that are nearer to each other than the sphere is wide: a pancake of the
 /// sphere's volume around (x, y), from plate to plate.
 struct DropletPlacement {
-  Vector3d center;  ///< r_c; of a pancake z does not matter
-  double radius;    ///< of the sphere, r_c
+  Vector3d center;            ///< r_c; of a pancake z does not matter
+  double radius;              ///< of the sphere, r_c
+  std::uint32_t species = 0;  ///< number of the liquid (mixture.h)
+};
+
+/// A box to be filled with liquid, around whatever is there.
+struct FillPlacement {
+  Vector3d lower, upper;      ///< corners, r_c; inside the domain
+  std::uint32_t species = 0;  ///< number of the liquid (mixture.h)
 };
 
 /// Height of the liquid between two plates, less than the gap by what the liquid keeps away from both

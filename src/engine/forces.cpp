@@ -13,16 +13,20 @@ std::vector<std::string> available_kernels() {
 }
 
 namespace {
-Kernels kernels_named(const std::string& name, DissipativeWeight weight) {
-  return name == "reference" ? reference_kernels(weight) : select_kernels(name, weight);
+Kernels kernels_named(const std::string& name, const Parameters& parameters) {
+  const DissipativeWeight weight = liquid_law(parameters.liquid, parameters.time_step).weight();
+  const PairModel model = pair_model(parameters);
+  return name == "reference" ? reference_kernels(weight, model) : select_kernels(name, weight, model);
 }
 }  // namespace
 
 Forces::Forces(const Parameters& parameters, const std::string& kernel)
-    : kernels_(kernels_named(kernel, liquid_law(parameters.liquid, parameters.time_step).weight())),
+    : kernels_(kernels_named(kernel, parameters)),
       kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
       constants_{} {
   constants_.laws = pair_table(parameters);
+  constants_.spline = spline_shape(parameters.spline);
+  rows_ = law_rows(constants_.laws, parameters);
   constants_.bodies.count_liquid = parameters.microparticles.counts_liquid;
   constants_.bodies.counted_by_liquid = parameters.microparticles.counted_by_liquid;
   constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
@@ -36,6 +40,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
 
 PairPass Forces::pass_over(Beads& beads, const Plates& wall, Microparticles& bodies) const {
   PairPass pass = constants_;
+  pass.rows = rows_.data();
   pass.position = beads.position.data();
   pass.predicted = beads.predicted.data();
   pass.force = beads.force.data();

@@ -35,6 +35,7 @@ class Forces {
   Kernels kernels_;
   std::string kernel_name_;
   PairPass constants_;
+  AlignedVector<LawRow> rows_;  ///< of a mixture
 };
 
 }  // namespace dmf::engine

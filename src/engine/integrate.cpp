@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/noise.h"
+#include "engine/species.h"
 
 namespace dmf::engine {
 namespace {
@@ -91,12 +92,28 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
   return {largest, wild};
 }
 
+/// Where the force pass of a mixture looks for a bead's species (species.h).
+void note_species(Beads& beads, const Parameters& parameters) {
+  if (pair_model(parameters) == PairModel::one_liquid) return;
+  const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    float& word = beads.position[i].w;
+    std::uint32_t key;
+    std::memcpy(&key, &word, sizeof key);
+    key = (key & ~species_bits) | beads.species_of(static_cast<std::size_t>(i));
+    std::memcpy(&word, &key, sizeof key);
+  }
+}
+
 }  // namespace
 
 DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
   const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
-  return move(beads, parameters, step, {0.5f * dt, dt, prediction});
+  const DriftReport report = move(beads, parameters, step, {0.5f * dt, dt, prediction});
+  note_species(beads, parameters);
+  return report;
 }
 
 void add_gravity(Beads& beads, const Vector3d& gravity) {
@@ -122,12 +139,16 @@ void finish(Beads& beads, const Parameters& parameters) {
 
 DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
-  return move(beads, parameters, step, {dt, 0.5f * dt, 0.f});
+  const DriftReport report = move(beads, parameters, step, {dt, 0.5f * dt, 0.f});
+  note_species(beads, parameters);
+  return report;
 }
 
 DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
-  return move(beads, parameters, step, {0.f, 0.5f * dt, 0.f});
+  const DriftReport report = move(beads, parameters, step, {0.f, 0.5f * dt, 0.f});
+  note_species(beads, parameters);
+  return report;
 }
 
 }  // namespace dmf::engine

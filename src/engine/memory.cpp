@@ -13,7 +13,8 @@ constexpr double of_program = 10e6;
 constexpr double of_wall_bead = 48;
 constexpr double of_cell = 4;
 constexpr double of_moving_bead = 230;
-constexpr double of_baoab = 16;  ///< more, of a moving bead
+constexpr double of_baoab = 16;   ///< more, of a moving bead
+constexpr double of_species = 2;  ///< more, of a moving bead of a mixture
 constexpr double of_body_bead = 240;
 
 }  // namespace
@@ -35,7 +36,8 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   need.program = of_program;
   need.wall = wall_beads(parameters) * of_wall_bead;
   need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
-  need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0));
+  need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0) +
+                                (parameters.mixture.liquids.empty() ? 0 : of_species));
   need.bodies = body_beads * of_body_bead;
   return need;
 }

@@ -53,6 +53,36 @@ HWY_INLINE Real mdpd_force(const MdpdLaw<Real>& law, Real attraction, Real r, Re
   return conservative_force(law, attraction + random - dissipative, r, density_sum);
 }
 
+/// Conservative force at any r: the attraction ends at r_c, the friction may not.
+template <class Real>
+HWY_INLINE Real conservative_force_anywhere(const MdpdLaw<Real>& law, Real attraction, Real r,
+                                            Real density_sum) {
+  const Real w_c = maximum(Real(1) - r * law.inverse_cutoff_radius, Real(0));
+  const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
+  return w_c * attraction + law.repulsion * density_sum * w_d;
+}
+
+/// -dW/du of the cubic spline of Liu (18) with u = 2 r / r_c. Both of its pieces in one:
+///
+///   W = (2 - u)^3 / 4 - (1 - u)^3,   a bracket that is negative counts as 0
+///
+/// which for u < 1 is his 1 - 3/2 u^2 + 3/4 u^3.
+template <class Real>
+HWY_INLINE Real spline_slope(Real u) {
+  const Real outer = maximum(Real(2) - u, Real(0));
+  const Real inner = maximum(Real(1) - u, Real(0));
+  return Real(0.75f) * (outer * outer) - Real(3) * (inner * inner);
+}
+
+/// Liu (19), (20): a_ij (A W'(r, r_c1) - B W'(r, r_c2)), at any r. No density enters.
+template <class Real>
+HWY_INLINE Real conservative_force_anywhere(const SplineLaw<Real>& law, Real strength, Real r,
+                                            Real /*density_sum*/) {
+  const SplineShape<Real>& shape = law.shape;
+  return strength * (shape.repulsion * spline_slope(r * shape.repulsion_rate) -
+                     shape.attraction * spline_slope(r * shape.attraction_rate));
+}
+
 /// w_R = (1 - r/r_D)^(s/2), 0 beyond r_D. Powers of fourth roots: exact roots and products are the same bits
 /// on every processor, a library's pow is not.
 template <class Real>
@@ -64,17 +94,11 @@ HWY_INLINE Real random_weight(const MdpdLaw<Real>& law, Real r) {
 }
 
 /// pair_force() with a weight of friction and noise of its own; for any r.
-template <PairForce part, class Real>
-HWY_INLINE Real weighted_force(const MdpdLaw<Real>& law, Real attraction, Real r, Real density_sum,
-                               Real approach, Real zeta) {
-  const auto conservative = [&]() HWY_ATTR {
-    // Not below r_c: the attraction ends there, the friction may not.
-    const Real w_c = maximum(Real(1) - r * law.inverse_cutoff_radius, Real(0));
-    const Real w_d = maximum(Real(1) - r * law.inverse_repulsion_radius, Real(0));
-    return w_c * attraction + law.repulsion * density_sum * w_d;
-  };
+template <PairForce part, class Law, class Real>
+HWY_INLINE Real weighted_force(const Law& law, Real attraction, Real r, Real density_sum, Real approach,
+                               Real zeta) {
   if constexpr (part == PairForce::conservative) {
-    return conservative();
+    return conservative_force_anywhere(law, attraction, r, density_sum);
   } else {
     const Real w_r = random_weight(law, r);
     const Real random = w_r * (law.random_amplitude * zeta);
@@ -84,7 +108,7 @@ HWY_INLINE Real weighted_force(const MdpdLaw<Real>& law, Real attraction, Real r
     else if constexpr (part == PairForce::friction)
       return friction;
     else
-      return conservative() + random + friction;
+      return conservative_force_anywhere(law, attraction, r, density_sum) + random + friction;
   }
 }
 
@@ -103,6 +127,13 @@ HWY_INLINE Real pair_force(const MdpdLaw<Real>& law, Real attraction, Real r, Re
     return w_c * (Real(0) - law.friction * w_c * approach);
   else
     return mdpd_force(law, attraction, r, density_sum, approach, zeta);
+}
+
+/// The same with Liu's conservative force.
+template <PairForce part, DissipativeWeight weight, class Real>
+HWY_INLINE Real pair_force(const SplineLaw<Real>& law, Real strength, Real r, Real density_sum, Real approach,
+                           Real zeta) {
+  return weighted_force<part>(law, strength, r, density_sum, approach, zeta);
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE

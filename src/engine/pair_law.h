@@ -41,6 +41,28 @@ struct MdpdLaw {
   }
 };
 
+/// Liu's two cubic splines (spline.h) as the kernels use them: each one's coefficient and 2 / radius.
+template <class Real>
+struct SplineShape {
+  Real repulsion;       ///< 2 A / r_c1
+  Real repulsion_rate;  ///< 2 / r_c1
+  Real attraction;      ///< 2 B / r_c2
+  Real attraction_rate;
+};
+
+/// The law with Liu's force in the place of the conservative one; `attraction` is its strength a_ij.
+template <class Real>
+struct SplineLaw : MdpdLaw<Real> {
+  SplineShape<Real> shape;
+};
+
+inline SplineShape<double> spline_shape(const SplineParameters& spline) {
+  const double repulsion_rate = 2.0 / spline.repulsion_radius,
+               attraction_rate = 2.0 / spline.attraction_radius;
+  return {spline.repulsion * repulsion_rate, repulsion_rate, spline.attraction * attraction_rate,
+          attraction_rate};
+}
+
 /// The liquid's law; walls share it but for their own attraction.
 inline MdpdLaw<double> liquid_law(const LiquidParameters& liquid, double time_step) {
   return {liquid.attraction,

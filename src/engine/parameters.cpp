@@ -129,6 +129,8 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("max_beads", static_cast<double>(parameters.max_beads), 1, 100e6, "1 to 100000000");
   check.within("max_memory", parameters.max_memory, 10, 1e6, "10 to 1000000 (MB)");
   check_watchdog(parameters.watchdog, check);
+  for (const auto& violations : {mixture_violations(parameters), spline_violations(parameters)})
+    found.insert(found.end(), violations.begin(), violations.end());
   // A domain that is out of range is told already.
   if (found.empty()) check_memory(parameters, check);
   return found;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/mixture.h"
+#include "engine/spline.h"
 #include "yaml/invalid_input.h"
 
 namespace dmf::engine {
@@ -127,6 +129,8 @@ struct Parameters {
   std::uint64_t max_beads = 4'000'000;  ///< moving beads a run may hold; [1, 100e6]
   double max_memory = 4000;             ///< that the run may take (memory.h), MB; [10, 1e6]
   WatchdogParameters watchdog;
+  MixtureParameters mixture;  ///< liquids beside `liquid`
+  SplineParameters spline;    ///< Liu's conservative force
 };
 
 /// All violated ranges, each as "key: value, allowed: range". Empty when the parameters are sound.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/cell_grid.h"
 #include "engine/memory.h"
 #include "engine/noise.h"
 #include "engine/observe/droplet_tracker.h"
@@ -37,25 +38,10 @@ double smallest_periodic(const Domain& domain, int axis, double distance) {
              : distance;
 }
 
-void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters) {
-  // Coarse first: only beads near the sites' box are compared with each of them.
-  Vector3d lower = sites.front(), upper = sites.front();
-  for (const Vector3d& site : sites) lower = lower.cwiseMin(site), upper = upper.cwiseMax(site);
-  const Vector3d middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
-  const double cutoff = parameters.liquid.cutoff_radius;
-  for (const Record& record : beads.position) {
-    Vector3d from_middle = Vector3d(record.x, record.y, record.z) - middle;
-    for (int axis = 0; axis < 3; ++axis)
-      from_middle[axis] = smallest_periodic(parameters.domain, axis, from_middle[axis]);
-    if ((from_middle.cwiseAbs().array() > half.array() + cutoff).any()) continue;
-    const Vector3d image = middle + from_middle;
-    for (const Vector3d& site : sites)
-      if ((site - image).squaredNorm() < cutoff * cutoff)
-        throw InvalidInput(
-            fmt::format("place is occupied: liquid at ({:.2f}, {:.2f}, {:.2f}) r_c, allowed: {} r_c or more "
-                        "from all other liquid",
-                        image.x(), image.y(), image.z(), cutoff));
-  }
+void require_species(std::uint32_t species, const Parameters& parameters) {
+  if (species > parameters.mixture.liquids.size())
+    throw InvalidInput(
+        fmt::format("species {}, allowed: 0 to {}", species, parameters.mixture.liquids.size()));
 }
 
 /// Ids for new beads, rising: those of beads that were taken out first, so that what is kept by id stays as
@@ -72,8 +58,9 @@ std::vector<std::uint32_t> take_ids(const Beads& beads, std::size_t count, std::
 }
 
 /// Beads of the initial density in a sphere.
-double sphere_beads(double radius, const Parameters& parameters) {
-  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * parameters.liquid.initial_density;
+double sphere_beads(const DropletPlacement& placement, const Parameters& parameters) {
+  const double radius = placement.radius;
+  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * initial_density(parameters, placement.species);
 }
 
 void require_within(const Domain& domain, int axis, double low, double high, double cutoff_radius) {
@@ -98,7 +85,7 @@ std::vector<Vector3d> sphere_sites(const DropletPlacement& placement, const Para
     require_within(domain, axis, cut_by_wall ? domain.lower.z() : center[axis] - reach[axis],
                    center[axis] + reach[axis], parameters.liquid.cutoff_radius);
   }
-  const double a = fcc_constant(parameters.liquid.initial_density);
+  const double a = fcc_constant(initial_density(parameters, placement.species));
   const double unbounded = std::numeric_limits<double>::infinity();
   const double lowest = domain.has_wall() ? domain.lower.z() + 0.5 * a : -unbounded;
   const double highest = domain.has_top_plate() ? domain.upper.z() - 0.5 * a : unbounded;
@@ -120,8 +107,8 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   for (int axis = 0; axis < 2; ++axis)
     require_within(domain, axis, placement.center[axis] - footprint, placement.center[axis] + footprint,
                    parameters.liquid.cutoff_radius);
-  const double a = fcc_constant(parameters.liquid.initial_density);
-  const auto count = static_cast<std::size_t>(std::lround(sphere_beads(placement.radius, parameters)));
+  const double a = fcc_constant(initial_density(parameters, placement.species));
+  const auto count = static_cast<std::size_t>(std::lround(sphere_beads(placement, parameters)));
   const double between = domain.size().z() - a;  // of the lowest and the highest layer
   const double layers = std::floor(between / (0.5 * a)) + 1;
   const double wide = std::sqrt(static_cast<double>(count) * a * a / (2.0 * 3.14159265 * layers)) + 2.0 * a;
@@ -139,6 +126,42 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   return sites;
 }
 
+/// Finds beads near a place.
+class BeadsAround {
+ public:
+  BeadsAround(const Beads& beads, const Domain& domain) : domain_(domain) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (domain.periodic(axis)) period_[axis] = static_cast<float>(domain.size()[axis]);
+    grid_.lay(domain, domain.lower.cast<float>(), domain.upper.cast<float>(), edge);
+    std::vector<std::uint32_t> order;
+    grid_.sort(beads.position.data(), beads.size(), order);
+    sorted_.reserve(order.size());
+    for (const std::uint32_t bead : order) sorted_.push_back(beads.position[bead]);
+  }
+
+  /// @param distance  up to `edge`.
+  bool any_within(double distance, const Vector3d& site) const {
+    const Eigen::Vector3f at = site.cast<float>();
+    const auto reach = Eigen::Vector3f::Constant(static_cast<float>(distance));
+    const PeriodicImages images(period_);
+    std::vector<BeadRun> runs;
+    append_runs(grid_, domain_, at - reach, at + reach, runs);
+    for (const BeadRun& run : runs)
+      for (std::uint32_t j = run.begin; j < run.end; ++j) {
+        const Eigen::Vector3f bead(sorted_[j].x, sorted_[j].y, sorted_[j].z);
+        if ((bead + images.shift(run.image) - at).norm() < distance) return true;
+      }
+    return false;
+  }
+
+ private:
+  static constexpr double edge = 1;  ///< of a cell, r_c
+  Domain domain_;
+  Eigen::Vector3f period_ = Eigen::Vector3f::Zero();
+  CellGrid grid_;
+  std::vector<Record> sorted_;
+};
+
 }  // namespace
 
 double liquid_height(const Parameters& parameters) {
@@ -152,6 +175,7 @@ double pancake_radius(const DropletPlacement& placement, const Parameters& param
 }
 
 std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Parameters& parameters) {
+  require_species(placement.species, parameters);
   const Vector3d& center = placement.center;
   const double radius = placement.radius;
   if (!center.allFinite() || !std::isfinite(radius) || radius <= 0)
@@ -159,7 +183,7 @@ std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Par
         fmt::format("droplet: center ({}, {}, {}), radius {}, allowed: finite, radius above 0 (r_c)",
                     center.x(), center.y(), center.z(), radius));
   // The wall may cut a part of the sphere off.
-  require_memory(parameters, 0.5 * sphere_beads(radius, parameters), 0);
+  require_memory(parameters, 0.5 * sphere_beads(placement, parameters), 0);
   const std::vector<Vector3d> sites = pancake_radius(placement, parameters) > 0
                                           ? pancake_sites(placement, parameters)
                                           : sphere_sites(placement, parameters);
@@ -169,12 +193,14 @@ std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Par
   return sites;
 }
 
-std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, const Parameters& parameters) {
+std::vector<Vector3d> slab_sites(const FillPlacement& placement, const Parameters& parameters) {
+  require_species(placement.species, parameters);
+  const Vector3d &lower = placement.lower, &upper = placement.upper;
   if (!parameters.domain.contains(lower) || !parameters.domain.contains(upper) ||
       !(lower.array() < upper.array()).all())
     throw InvalidInput("slab: allowed: lower below upper, both in the domain");
-  require_memory(parameters, (upper - lower).prod() * parameters.liquid.initial_density, 0);
-  const double a = fcc_constant(parameters.liquid.initial_density);
+  require_memory(parameters, (upper - lower).prod() * initial_density(parameters, placement.species), 0);
+  const double a = fcc_constant(initial_density(parameters, placement.species));
   // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
   const Vector3d size = upper - lower;
   const Vector3d cells = (size / a).array().round().max(1.0);
@@ -184,9 +210,41 @@ std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, c
   return sites;
 }
 
-std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
-                        std::uint64_t step, std::uint32_t& next_id) {
-  require_free(beads, sites, parameters);
+void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters) {
+  // Coarse first: only beads near the sites' box are compared with each of them.
+  Vector3d lower = sites.front(), upper = sites.front();
+  for (const Vector3d& site : sites) lower = lower.cwiseMin(site), upper = upper.cwiseMax(site);
+  const Vector3d middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+  const double cutoff = parameters.liquid.cutoff_radius;
+  for (const Record& record : beads.position) {
+    Vector3d from_middle = Vector3d(record.x, record.y, record.z) - middle;
+    for (int axis = 0; axis < 3; ++axis)
+      from_middle[axis] = smallest_periodic(parameters.domain, axis, from_middle[axis]);
+    if ((from_middle.cwiseAbs().array() > half.array() + cutoff).any()) continue;
+    const Vector3d image = middle + from_middle;
+    for (const Vector3d& site : sites)
+      if ((site - image).squaredNorm() < cutoff * cutoff)
+        throw InvalidInput(
+            fmt::format("place is occupied: liquid at ({:.2f}, {:.2f}, {:.2f}) r_c, allowed: {} r_c or more "
+                        "from all other liquid",
+                        image.x(), image.y(), image.z(), cutoff));
+  }
+}
+
+std::vector<Vector3d> free_sites(const FillPlacement& placement, const Beads& beads,
+                                 const Microparticles& bodies, const Parameters& parameters) {
+  // Nearer than half a lattice constant, less than the next layer of a slab that begins here.
+  const double distance = 0.49 * fcc_constant(initial_density(parameters, placement.species));
+  std::vector<Vector3d> sites;
+  const BeadsAround there(beads, parameters.domain);
+  for (const Vector3d& site : slab_sites(placement, parameters))
+    if (!there.any_within(distance, site) && bodies.clear_of(site)) sites.push_back(site);
+  if (sites.empty()) throw InvalidInput("fill: no free place, allowed: a box that is not full already");
+  return sites;
+}
+
+std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, std::uint32_t species,
+                        const Parameters& parameters, std::uint64_t step, std::uint32_t& next_id) {
   const std::vector<std::uint32_t> ids = take_ids(beads, sites.size(), next_id);
   const StepKey key = step_key(parameters.seed, step, Stream::velocity);
   const double spread = std::sqrt(parameters.liquid.temperature);
@@ -202,7 +260,8 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const 
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const Eigen::Vector3f at = sites[k].cast<float>(),
                           moving = (spread * (velocities[k] - mean)).cast<float>();
-    beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, ids[k]);
+    beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, ids[k],
+              static_cast<std::uint8_t>(species));
   }
   return sites.size();
 }

@@ -32,6 +32,13 @@ void require_sound(const Beads& beads, std::uint32_t next_bead_id, const Droplet
        {&beads.position, &beads.predicted, &beads.velocity, &beads.force, &beads.listed})
     if (array->size() != beads.size()) throw InvalidInput("saved state: arrays of unequal length");
 
+  if (!beads.species.empty() && beads.species.size() != beads.size())
+    throw InvalidInput("saved state: arrays of unequal length");
+  for (const std::uint8_t species : beads.species)
+    if (species > parameters.mixture.liquids.size())
+      throw InvalidInput(fmt::format("saved state: species {}, allowed: 0 to {}", species,
+                                     parameters.mixture.liquids.size()));
+
   // What is kept by id must fit.
   if (next_bead_id > parameters.max_beads)
     throw InvalidInput(fmt::format("saved state: next bead {}, allowed: up to {} (max_beads)", next_bead_id,

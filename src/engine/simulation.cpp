@@ -88,6 +88,13 @@ struct Simulation::State {
     check("body_forces.magnetic", forces.magnetic, largest * lightest, "k_BT / r_c");
   }
 
+  /// For liquid at these places. @throws InvalidInput.
+  void require_room(const std::vector<Vector3d>& sites) const {
+    require_memory(parameters, static_cast<double>(beads.size() + sites.size()),
+                   static_cast<double>(microparticles.beads().size()));
+    microparticles.require_clear(sites);
+  }
+
   /// Stops the run for good. @throws Instability.
   [[noreturn]] void stop(const std::string& why) {
     fault =
@@ -172,8 +179,9 @@ struct Simulation::State {
   }
 
   void archive(Archive& archive) {
-    // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is.
-    constexpr std::uint64_t current = 4;
+    // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is. 4: one
+    // liquid.
+    constexpr std::uint64_t current = 5;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
     if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));
@@ -188,6 +196,7 @@ struct Simulation::State {
          {&beads.position, &beads.predicted, &beads.velocity, &beads.force, &beads.listed})
       archive(*array);
     archive(beads.id);
+    archive(beads.species);
     std::vector<float> attraction = wall.attraction();
     archive(attraction);
     wall.set_attraction(attraction);
@@ -202,6 +211,11 @@ struct Simulation::State {
 
 Simulation::Simulation(const Parameters& parameters, ContactAngleCurve curve, const Execution& execution)
     : state_(std::make_unique<State>(parameters, std::move(curve), execution)) {
+  if (const PairCoefficients* on_wall = wall_coefficients(parameters)) {
+    const auto attraction = static_cast<float>(on_wall->attraction);
+    state_->wall.set_attraction(std::vector<float>(state_->wall.size(), attraction));
+    return;
+  }
   state_->wall.set_top_wettability(parameters.wall.top_contact_angle, state_->curve);
   const double angle = state_->curve.max_angle();
   set_wettability([angle](double, double) { return angle; });
@@ -249,19 +263,26 @@ void Simulation::refresh() {
 }
 
 void Simulation::set_wettability(const ContactAngleField& field) {
-  state_->wall.set_wettability(field, state_->curve);
+  if (!wall_coefficients(state_->parameters)) state_->wall.set_wettability(field, state_->curve);
 }
 
 std::size_t Simulation::add_droplet(const DropletPlacement& placement) {
-  return place(droplet_sites(placement, state_->parameters));
+  const std::vector<Vector3d> sites = droplet_sites(placement, state_->parameters);
+  state_->require_room(sites);
+  require_free(state_->beads, sites, state_->parameters);
+  return place(sites, placement.species);
 }
 
-std::size_t Simulation::place(const std::vector<Vector3d>& sites) {
+std::size_t Simulation::fill(const FillPlacement& placement) {
+  const State& s = *state_;
+  const std::vector<Vector3d> sites = free_sites(placement, s.beads, s.microparticles, s.parameters);
+  s.require_room(sites);
+  return place(sites, placement.species);
+}
+
+std::size_t Simulation::place(const std::vector<Vector3d>& sites, std::uint32_t species) {
   State& s = *state_;
-  require_memory(s.parameters, static_cast<double>(s.beads.size() + sites.size()),
-                 static_cast<double>(s.microparticles.beads().size()));
-  s.microparticles.require_clear(sites);
-  const std::size_t placed = place_beads(s.beads, sites, s.parameters, s.step, s.next_bead_id);
+  const std::size_t placed = place_beads(s.beads, sites, species, s.parameters, s.step, s.next_bead_id);
   refresh();
   return placed;
 }
@@ -271,7 +292,10 @@ std::size_t Simulation::fill_box() {
 }
 
 std::size_t Simulation::fill_slab(const Vector3d& lower, const Vector3d& upper) {
-  return place(slab_sites(lower, upper, state_->parameters));
+  const std::vector<Vector3d> sites = slab_sites({lower, upper}, state_->parameters);
+  state_->require_room(sites);
+  require_free(state_->beads, sites, state_->parameters);
+  return place(sites, 0);
 }
 
 void Simulation::remove_droplet(std::uint32_t id) {
@@ -323,6 +347,7 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
       snapshot->velocities.emplace_back(v.x, v.y, v.z);
       snapshot->bead_ids.push_back(id);
       snapshot->bead_droplets.push_back(s.tracker.droplet_of(id));
+      if (!s.beads.species.empty()) snapshot->bead_species.push_back(s.beads.species[index_of_id[id]]);
       if (request.virial) snapshot->bead_virials.push_back(virial.of_bead[index_of_id[id]]);
     }
   }

@@ -44,7 +44,8 @@ class Simulation {
   /// One time step. @throws Instability.
   void step();
 
-  /// Sets what contact angle the wall shows where, from the next step on.
+  /// Sets what contact angle the wall shows where, from the next step on. Where the mixture gives a law of
+  /// its first liquid with the wall, the wall shows that instead, whatever is set here.
   /// @throws InvalidInput, unchanged, when an angle is outside the curve's range or not finite.
   void set_wettability(const ContactAngleField& field);
 
@@ -54,6 +55,11 @@ class Simulation {
   /// r_c, is too small to hold 20 beads, or would exceed max_beads.
   /// @returns the number of beads placed.
   std::size_t add_droplet(const DropletPlacement& placement);
+
+  /// Fills a box with a liquid at rest, as far as nothing is there: sites of its lattice that are nearer to
+  /// another bead than half a lattice constant, or to a microparticle than half an r_c, are left out.
+  /// @throws InvalidInput, unchanged, when the box leaves the domain or holds no free site.
+  std::size_t fill(const FillPlacement& placement);
 
   /// Fills the whole box with liquid of the initial density (bulk studies). @throws InvalidInput when not
   /// empty.
@@ -101,7 +107,7 @@ class Simulation {
   int threads() const;
 
  private:
-  std::size_t place(const std::vector<Vector3d>& sites);
+  std::size_t place(const std::vector<Vector3d>& sites, std::uint32_t species);
   void refresh();
 
   struct State;

@@ -160,15 +160,24 @@ std::string explain(const chip::Scene& scene) {
 
   double moving = 0, largest = 0;
   for (const auto& droplet : scene.droplets) {
-    moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * liquid.initial_density;
+    moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * initial_density(parameters, droplet.species);
     largest = std::max(largest, droplet.radius);
   }
+  // Less where droplets and microparticles are in the way.
+  for (const auto& fill : scene.fills)
+    moving += (fill.upper - fill.lower).prod() * initial_density(parameters, fill.species);
   const engine::MemoryNeed need = engine::memory_need(parameters, moving, body_beads(scene));
   std::string text = fmt::format("{}: {}\n", scene.name, scene.description);
   text += fmt::format("domain       {} x {} x {} r_c = {:.3g} x {:.3g} x {:.3g} mm\n", size.x(), size.y(),
                       size.z(), size.x() * units.length_m * 1e3, size.y() * units.length_m * 1e3,
                       size.z() * units.length_m * 1e3);
   text += fmt::format("liquid       {} droplets, about {:.0f} moving beads\n", scene.droplets.size(), moving);
+  if (const auto& others = parameters.mixture.liquids; !others.empty()) {
+    text += "species      liquid";
+    for (const auto& other : others) text += ", " + other.name;
+    text += fmt::format("; {} boxes filled\n", scene.fills.size());
+  }
+  for (const std::string& notice : engine::notices(parameters)) text += "note         " + notice + "\n";
   text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n",
                       engine::wall_beads(parameters));
   text += about_electrodes(scene);

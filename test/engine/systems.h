@@ -1,4 +1,5 @@
 #pragma once
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -70,6 +71,45 @@ void scatter_beads(System& system, double density, const Vector3d& lower, const 
     const Vector3d at = lower + fraction.cwiseProduct(upper - lower);
     if (inside(at)) add_bead(system, at);
   }
+}
+
+/// Writes into the keys what the force pass of a mixture, and that of a spline, read there.
+inline void note_species(System& system) {
+  Beads& beads = system.beads;
+  for (std::size_t k = 0; k < beads.size(); ++k) {
+    std::uint32_t key;
+    std::memcpy(&key, &beads.position[k].w, sizeof key);
+    key = key / 8 * 8 + beads.species_of(k);
+    std::memcpy(&beads.position[k].w, &key, sizeof key);
+  }
+}
+
+/// Three liquids in place of one, every pair and the walls with a law of their own. Bead k becomes one of
+/// liquid k mod 3.
+inline void mix(System& system) {
+  MixtureParameters& mixture = system.parameters.mixture;
+  const bool plain = system.parameters.liquid.repulsion == 0;
+  const auto law = [plain](double attraction, double repulsion, double random_amplitude) {
+    return plain ? PairCoefficients{-attraction, 0, random_amplitude}
+                 : PairCoefficients{attraction, repulsion, random_amplitude};
+  };
+  mixture.liquids = {{"oil", law(-33, 20, 5)}, {"wax", law(-28, 31, 2)}};
+  mixture.pairs = {{"liquid", "oil", law(-21, 25, 7)},
+                   {"wax", "liquid", law(-17, 12, 0)},
+                   {"oil", "wax", law(-9, 40, 9)},
+                   {"oil", "wall", law(-19, 22, 4)},
+                   {"wall", "wax", law(-13, 27, 8)}};
+  Beads& beads = system.beads;
+  beads.species.clear();
+  for (std::size_t k = 0; k < beads.size(); ++k) beads.species.push_back(static_cast<std::uint8_t>(k % 3));
+  note_species(system);
+}
+
+/// Liu's potential of short-range repulsion and longer-range attraction, of plain DPD's strength.
+inline SplineParameters liu_spline() {
+  SplineParameters spline;
+  spline.used = true;
+  return spline;
 }
 
 /// Lan's microparticle, on the wall when it has no z.
@@ -193,6 +233,43 @@ inline std::vector<System> all_systems() {
     s.parameters.liquid.dissipation_exponent = 3.5;
     s.parameters.liquid.dissipation_radius = 0.8;
     scatter_beads(s, 6, {0, 0, 0}, {9, 9, 1.2}, everywhere);
+  }
+  {
+    System& s = begin("mixture in a box", periodic_box(5));
+    scatter_beads(s, 6, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+    mix(s);
+  }
+  {
+    System& s = begin("mixture around a microparticle on the wall", plate(14, 12));
+    s.microparticles = {sphere_at({6, 7})};
+    scatter_beads(s, 6, {2, 2, 0}, {12, 12, 8}, [](const Vector3d& p) {
+      return (p - Vector3d(7, 7, 2)).norm() < 3 && (p - Vector3d(6, 7, 1)).norm() > 1.3;
+    });
+    mix(s);
+  }
+  {
+    System& s = begin("mixture of plain DPD with a linear weight between plates", two_plates(6, 3));
+    s.parameters.liquid.attraction = 25;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.liquid.dissipation_exponent = 1;
+    scatter_beads(s, 4, {0, 0, 0}, {6, 6, 3}, everywhere);
+    mix(s);
+  }
+  {
+    System& s = begin("spline force of one liquid on a wall", plate(9, 10));
+    s.parameters.liquid.attraction = 18.75;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.spline = liu_spline();
+    scatter_beads(s, 6, {0, 0, 0}, {9, 9, 1.2}, everywhere);
+    note_species(s);
+  }
+  {
+    System& s = begin("spline forces of a mixture", periodic_box(5));
+    s.parameters.liquid.attraction = 18.75;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.spline = liu_spline();
+    scatter_beads(s, 4, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
+    mix(s);
   }
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <string>
 
 #include "engine/kernels/lanes-inl.h"
 #include "engine/noise-inl.h"
@@ -22,6 +23,7 @@ struct End {
   Vector3d velocity = Vector3d::Zero();
   double density = 0;
   std::uint32_t key = 0;
+  std::uint32_t species = 0;  ///< of liquid
 };
 
 /// Forces on the beads of one kind. `scale` is the sum of the absolute values of all contributions: what
@@ -51,7 +53,8 @@ struct Ends {
     const BodyBeads& body_beads = sorted.bodies.beads();
     for (std::size_t i = 0; i < beads.size(); ++i) {
       const Record& v = beads.predicted[i];
-      liquid.push_back({beads.position[i], {v.x, v.y, v.z}, 0, bits(beads.position[i].w)});
+      liquid.push_back(
+          {beads.position[i], {v.x, v.y, v.z}, 0, bits(beads.position[i].w), beads.species_of(i)});
     }
     for (std::uint32_t k = 0; k < sorted.wall.size(); ++k)
       wall.push_back({sorted.wall.beads()[k], Vector3d::Zero(), 0, HWY_NAMESPACE::wall_key(k)});
@@ -85,12 +88,26 @@ struct Ends {
   Domain domain;
 };
 
+/// Which law holds for the pair with an end.
+using LawOf = std::function<const MdpdLaw<double>&(const End&)>;
+
+/// Liu (18) to (20), piece by piece.
+double spline_force(const SplineParameters& spline, double strength, double r) {
+  const auto minus_slope = [r](double cutoff) {
+    const double h = cutoff / 2, q = r / h;
+    return q < 1 ? (3 * q - 2.25 * q * q) / h : q < 2 ? 0.75 * (2 - q) * (2 - q) / h : 0.0;
+  };
+  return strength * (spline.repulsion * minus_slope(spline.repulsion_radius) -
+                     spline.attraction * minus_slope(spline.attraction_radius));
+}
+
 /// Adds the forces of `others` on one bead.
-void add_forces(const Domain& domain, const MdpdLaw<double>& law, const End& i,
-                const std::vector<End>& others, const std::function<double(const End&)>& attraction_of,
-                std::size_t k, Exact& exact) {
+void add_forces(const Domain& domain, const LawOf& law_of, const End& i, const std::vector<End>& others,
+                const std::function<double(const End&)>& attraction_of, std::size_t k, Exact& exact,
+                const SplineParameters& spline = {}) {
   for (const End& j : others) {
     if (&i == &j) continue;
+    const MdpdLaw<double>& law = law_of(j);
     const Vector3d d = apart(domain, i.at, j.at);
     const double r = d.norm();
     if (r >= law.range()) continue;
@@ -100,8 +117,9 @@ void add_forces(const Domain& domain, const MdpdLaw<double>& law, const End& i,
     // w_R = (1 - r/r_D)^(s/2)
     const double weight =
         std::pow(std::max(0.0, 1 - r * law.inverse_dissipation_radius), law.twice_dissipation_exponent / 4.0);
-    const double conservative =
-        r < 1 ? HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum) : 0.0;
+    const double conservative = spline.used ? spline_force(spline, attraction, r)
+                                : r < 1 ? HWY_NAMESPACE::conservative_force(law, attraction, r, density_sum)
+                                        : 0.0;
     const double random = law.random_amplitude * weight * zeta;
     const double friction = -law.friction * weight * weight * approach;
     exact.force[k] += (conservative + random + friction) / r * d;
@@ -124,18 +142,50 @@ Exact nothing_yet(const std::vector<End>& of) {
 
 double own_attraction(const End& end) { return end.at.w; }
 
+/// What the parameters say of two species, "wall" being one.
+MdpdLaw<double> law_between(const Parameters& parameters, const std::string& a, const std::string& b) {
+  LiquidParameters liquid = parameters.liquid;
+  const auto take = [&liquid](const PairCoefficients& law) {
+    liquid.attraction = law.attraction;
+    liquid.repulsion = law.repulsion;
+    liquid.random_amplitude = law.random_amplitude;
+  };
+  for (const FurtherLiquid& one : parameters.mixture.liquids)
+    if (a == one.name && b == one.name) take(one.own);
+  for (const PairOfSpecies& pair : parameters.mixture.pairs)
+    if ((pair.first == a && pair.second == b) || (pair.first == b && pair.second == a))
+      take(pair.coefficients);
+  return liquid_law(liquid, parameters.time_step);
+}
+
 Exact sum_over_all_pairs(const System& system, const Sorted& sorted) {
   const Ends ends(system, sorted);
-  const MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step);
-  MdpdLaw<double> body_law = law;
-  body_law.repulsion = system.parameters.microparticles.liquid_repulsion;
+  const Parameters& parameters = system.parameters;
+  MdpdLaw<double> body_law = liquid_law(parameters.liquid, parameters.time_step);
+  body_law.repulsion = parameters.microparticles.liquid_repulsion;
+  std::vector<std::string> names{"liquid"};
+  for (const FurtherLiquid& liquid : parameters.mixture.liquids) names.push_back(liquid.name);
+  std::vector<std::vector<MdpdLaw<double>>> laws(names.size());
+  for (std::size_t a = 0; a < names.size(); ++a)
+    for (std::size_t b = 0; b < names.size(); ++b)
+      laws[a].push_back(law_between(parameters, names[a], names[b]));
   Exact exact = nothing_yet(ends.liquid);
   for (std::size_t i = 0; i < ends.liquid.size(); ++i) {
     const End& bead = ends.liquid[i];
+    const auto law_with = [&](const End& j) -> const MdpdLaw<double>& {
+      return laws[bead.species][j.species];
+    };
     add_forces(
-        ends.domain, law, bead, ends.liquid, [&](const End&) { return law.attraction; }, i, exact);
-    add_forces(ends.domain, law, bead, ends.wall, own_attraction, i, exact);
-    add_forces(ends.domain, body_law, bead, ends.bodies, own_attraction, i, exact);
+        ends.domain, law_with, bead, ends.liquid, [&](const End& j) { return law_with(j).attraction; }, i,
+        exact, parameters.spline);
+    const MdpdLaw<double> wall_law = law_between(parameters, names[bead.species], "wall");
+    add_forces(
+        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return wall_law; }, bead, ends.wall,
+        [&](const End& j) { return bead.species == 0 ? own_attraction(j) : wall_law.attraction; }, i, exact,
+        parameters.spline);
+    add_forces(
+        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return body_law; }, bead, ends.bodies,
+        own_attraction, i, exact);
   }
   return exact;
 }
@@ -155,11 +205,11 @@ ExactOnBodies sum_over_all_body_pairs(const System& system, const Sorted& sorted
   for (std::size_t i = 0; i < ends.bodies.size(); ++i) {
     const End& bead = ends.bodies[i];
     add_forces(
-        ends.domain, law, bead, ends.liquid, [&](const End&) { return own_attraction(bead); }, i,
-        exact.of_liquid);
+        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return law; }, bead, ends.liquid,
+        [&](const End&) { return own_attraction(bead); }, i, exact.of_liquid);
     add_forces(
-        ends.domain, adhesion, bead, ends.wall, [&](const End&) { return model.wall_attraction; }, i,
-        exact.of_wall);
+        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return adhesion; }, bead, ends.wall,
+        [&](const End&) { return model.wall_attraction; }, i, exact.of_wall);
   }
   return exact;
 }
@@ -200,6 +250,39 @@ TEST_P(EveryKernel, AgreesWithTheSumOverAllPairs) {
                  "of liquid on microparticles");
     expect_close(bodies.wall_force, on_bodies.of_wall.conservative, on_bodies.of_wall.scale,
                  "of the wall on microparticles");
+  }
+}
+
+/// Puts two more liquids beside the first one that differ from it in nothing but the name.
+void mix_with_itself(System& system) {
+  const LiquidParameters& liquid = system.parameters.liquid;
+  const PairCoefficients same{liquid.attraction, liquid.repulsion, liquid.random_amplitude};
+  MixtureParameters& mixture = system.parameters.mixture;
+  for (FurtherLiquid& further : mixture.liquids) further.own = same;
+  for (PairOfSpecies& pair : mixture.pairs) pair.coefficients = same;
+}
+
+TEST_P(EveryKernel, GivesAMixtureOfOneAndTheSameLiquidTheForcesOfThatLiquidToTheBit) {
+  for (System& system : all_systems()) {
+    // Over a wall the first liquid sees the wettability of each bead, the others one number.
+    if (system.parameters.domain.has_wall() || system.parameters.mixture.liquids.empty() ||
+        system.parameters.spline.used)
+      continue;
+    SCOPED_TRACE(system.name);
+    mix_with_itself(system);
+    System plain = system;
+    plain.parameters.mixture = {};
+    const auto forces_of = [this](System& one) {
+      Sorted sorted(one, GetParam());
+      sorted.forces.density(one.beads, sorted.wall, sorted.bodies, sorted.pairs);
+      sorted.forces.force(one.beads, sorted.wall, sorted.bodies, sorted.pairs);
+      return one.beads.force;
+    };
+    // The keys that the mixture reads its species from make the same noise in both.
+    const AlignedVector<Record> mixed = forces_of(system), alone = forces_of(plain);
+    ASSERT_EQ(mixed.size(), alone.size());
+    for (std::size_t i = 0; i < mixed.size(); ++i)
+      EXPECT_EQ(std::memcmp(&mixed[i], &alone[i], sizeof mixed[i]), 0) << "bead " << i;
   }
 }
 

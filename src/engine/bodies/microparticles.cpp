@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/bodies/shape.h"
 #include "engine/integrate.h"
@@ -39,20 +40,27 @@ void require_sound(const MicroparticlePlacement& placement, const Parameters& pa
 /// Nearest that liquid may be to the surface of a microparticle when one of both is placed, r_c.
 constexpr double smallest_gap = 0.5;
 
+/// From a microparticle's surface to a place, r_c; where that is far, something far.
+double gap_to(const Vector3d& place, const Microparticle& particle, const Domain& domain) {
+  const Vector3d from_centre = domain.nearest_image(place - particle.body.position);
+  double gap = from_centre.norm() - particle.bounding_radius;
+  if (gap >= smallest_gap) return gap;
+  gap = std::numeric_limits<double>::infinity();
+  for (const ContactSphere& sphere : particle.contact_spheres)
+    gap = std::min(gap, (from_centre - particle.body.orientation * sphere.offset).norm() - sphere.radius);
+  return gap;
+}
+
 void require_apart(const Microparticle& particle, const std::vector<Vector3d>& liquid, const Domain& domain) {
   for (const Vector3d& bead : liquid) {
-    const Vector3d from_centre = domain.nearest_image(bead - particle.body.position);
-    if (from_centre.norm() >= particle.bounding_radius + smallest_gap) continue;
-    for (const ContactSphere& sphere : particle.contact_spheres) {
-      const double gap = (from_centre - particle.body.orientation * sphere.offset).norm() - sphere.radius;
-      if (gap < smallest_gap)
-        throw InvalidInput(
-            fmt::format("microparticle at ({:.4g}, {:.4g}, {:.4g}): {:.3g} r_c from its "
-                        "surface to the liquid at ({:.4g}, {:.4g}, {:.4g}), allowed: {} or "
-                        "more",
-                        particle.body.position.x(), particle.body.position.y(), particle.body.position.z(),
-                        gap, bead.x(), bead.y(), bead.z(), smallest_gap));
-    }
+    const double gap = gap_to(bead, particle, domain);
+    if (gap < smallest_gap)
+      throw InvalidInput(
+          fmt::format("microparticle at ({:.4g}, {:.4g}, {:.4g}): {:.3g} r_c from its "
+                      "surface to the liquid at ({:.4g}, {:.4g}, {:.4g}), allowed: {} or "
+                      "more",
+                      particle.body.position.x(), particle.body.position.y(), particle.body.position.z(), gap,
+                      bead.x(), bead.y(), bead.z(), smallest_gap));
   }
 }
 
@@ -100,6 +108,12 @@ void Microparticles::remove(std::uint32_t id) {
 
 void Microparticles::require_clear(const std::vector<Vector3d>& sites) const {
   for (const Microparticle& particle : all_) require_apart(particle, sites, parameters_.domain);
+}
+
+bool Microparticles::clear_of(const Vector3d& site) const {
+  return std::all_of(all_.begin(), all_.end(), [&](const Microparticle& particle) {
+    return gap_to(site, particle, parameters_.domain) >= smallest_gap;
+  });
 }
 
 void Microparticles::require_room(const Microparticle& particle) const {

@@ -80,6 +80,8 @@ class Microparticles {
   /// @throws InvalidInput when a place for a liquid bead is in a microparticle or nearer to it than half an
   /// r_c.
   void require_clear(const std::vector<Vector3d>& sites) const;
+  /// Whether a liquid bead may be placed there.
+  bool clear_of(const Vector3d& site) const;
   /// @throws InvalidInput when there is none of that id.
   void remove(std::uint32_t id);
 

@@ -18,6 +18,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
+#include <type_traits>
 
 // A target for every x86-64 there is, two for those in use; the ones between bring little.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -45,6 +47,24 @@ HWY_INLINE MdpdLaw<Lanes> in_lanes(const MdpdLaw<double>& law) {
           lanes(law.random_amplitude),
           lanes(law.inverse_dissipation_radius),
           law.twice_dissipation_exponent};
+}
+
+HWY_INLINE SplineLaw<Lanes> in_lanes(const SplineLaw<double>& law) {
+  const auto lanes = [](double value) HWY_ATTR { return Lanes(static_cast<float>(value)); };
+  const SplineShape<double>& shape = law.shape;
+  return {in_lanes(static_cast<const MdpdLaw<double>&>(law)),
+          {lanes(shape.repulsion), lanes(shape.repulsion_rate), lanes(shape.attraction),
+           lanes(shape.attraction_rate)}};
+}
+
+/// What a liquid's bead has with another species.
+template <PairModel model>
+HWY_INLINE auto law_between(const PairPass& pass, Species liquid, Species other) {
+  const MdpdLaw<double>& law = pass.laws(liquid, other);
+  if constexpr (model == PairModel::spline)
+    return in_lanes(SplineLaw<double>{law, pass.spline});
+  else
+    return in_lanes(law);
 }
 
 // ---- density ----
@@ -158,6 +178,13 @@ HWY_INLINE Separation separation(const PairPass& pass, const Record& i, Lanes x,
   return d;
 }
 
+/// Of a bead of a mixture.
+HWY_INLINE std::uint32_t species_number(const Record& position) {
+  std::uint32_t key;
+  std::memcpy(&key, &position.w, sizeof key);
+  return key & species_bits;
+}
+
 /// The bead that the forces are summed for.
 struct Receiver {
   const Record& position;
@@ -225,13 +252,56 @@ struct WallUnderBody {
   }
 };
 
+/// Wall beads met by a liquid for which all of them are alike, or by one that sees the attraction of each.
+struct WallOfMixture {
+  WallBeads beads;
+  Lanes share_of_own;  ///< 1: of each bead, 0: the same of all
+  Lanes of_all;
+  HWY_INLINE Partners load(std::size_t k) const {
+    Partners j = beads.load(k);
+    j.attraction = share_of_own * j.attraction + of_all;
+    return j;
+  }
+};
+
+/// What one liquid has with all the others, looked up by the species in their keys.
+template <class Law>
+struct LawsOfLiquid {
+  Law law;  ///< what all pairs share
+  LaneTable attraction, repulsion, friction, random_amplitude;
+
+  HWY_INLINE LawsOfLiquid(const Law& shared, const LawRow& row)
+      : law(shared),
+        attraction(row.attraction),
+        repulsion(row.repulsion),
+        friction(row.friction),
+        random_amplitude(row.random_amplitude) {}
+};
+
+/// The law of the pairs with `j`, whose attraction stands in it: one for all ...
+HWY_INLINE const MdpdLaw<Lanes>& law_with(const MdpdLaw<Lanes>& law, Partners&) { return law; }
+HWY_INLINE const SplineLaw<Lanes>& law_with(const SplineLaw<Lanes>& law, Partners&) { return law; }
+/// ... or one for each.
+template <class Law>
+HWY_INLINE Law law_with(const LawsOfLiquid<Law>& laws, Partners& j) {
+  const UnsignedLanes species = j.key & UnsignedLanes(species_bits);
+  Law law = laws.law;
+  j.attraction = laws.attraction[species];
+  law.repulsion = laws.repulsion[species];
+  law.friction = laws.friction[species];
+  law.random_amplitude = laws.random_amplitude[species];
+  return law;
+}
+
 using ForceSum = LaneSums<3>;
 
-template <PairForce part, DissipativeWeight weight, bool across_periodic, class Others>
-HWY_INLINE void add_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
-                           const Others& others, std::size_t count, ForceSum& total) {
+/// @param laws  what law_with() knows.
+template <PairForce part, DissipativeWeight weight, bool across_periodic, class Laws, class Others>
+HWY_INLINE void add_forces(const PairPass& pass, const Laws& laws, const Receiver& i, const Others& others,
+                           std::size_t count, ForceSum& total) {
   for (std::size_t k = 0; k < count; k += lane_count) {
-    const Partners j = others.load(k);
+    Partners j = others.load(k);
+    const auto& law = law_with(laws, j);
     const Separation d = separation<across_periodic>(pass, i.position, j.x, j.y, j.z);
     const Lanes r = square_root(maximum(squared_length(d.x, d.y, d.z), Lanes(smallest_squared_distance)));
     const Lanes inverse_r = Lanes(1) / r;
@@ -271,7 +341,36 @@ HWY_INLINE void number_slots(const BeadRun* run, const BeadRun* end, std::uint32
   store_lanes(UnsignedLanes(0), bead_in_slot);
 }
 
-template <PairForce part, DissipativeWeight weight, bool across_periodic>
+/// Adds what liquid in range does to a bead.
+template <PairForce part, DissipativeWeight weight, PairModel model, bool across_periodic>
+HWY_INLINE void add_liquid_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
+                                  const SlotsOfBeads& in_range, std::size_t count, ForceSum& total) {
+  const Liquid<SlotsOfBeads> liquid{pass, in_range, law.attraction};
+  if constexpr (model == PairModel::one_liquid) {
+    add_forces<part, weight, across_periodic>(pass, law, i, liquid, count, total);
+  } else {
+    const auto shared = law_between<model>(pass, Species::liquid, Species::liquid);
+    const LawsOfLiquid<std::decay_t<decltype(shared)>> laws(shared, pass.rows[species_number(i.position)]);
+    add_forces<part, weight, across_periodic>(pass, laws, i, liquid, count, total);
+  }
+}
+
+/// Adds what the wall beads in range, whose indices are packed, do to it.
+template <PairForce part, DissipativeWeight weight, PairModel model, bool across_periodic>
+HWY_INLINE void add_wall_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
+                                const Packed& packed, std::size_t count, ForceSum& total) {
+  const WallBeads wall{pass, packed.foreign_in_range};
+  if constexpr (model == PairModel::one_liquid) {
+    add_forces<part, weight, across_periodic>(pass, law, i, wall, count, total);
+  } else {
+    const std::uint32_t number = species_number(i.position);
+    const auto own = law_between<model>(pass, liquid_species(number), Species::wall);
+    const WallOfMixture seen{wall, Lanes(number == 0 ? 1 : 0), number == 0 ? Lanes(0) : own.attraction};
+    add_forces<part, weight, across_periodic>(pass, own, i, seen, count, total);
+  }
+}
+
+template <PairForce part, DissipativeWeight weight, PairModel model, bool across_periodic>
 HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
                               const Packed& packed) {
   const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::liquid));
@@ -288,13 +387,11 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const SlotsOfBeads in_range{block.in_range.data() + block.in_range_begin[bead - block.begin],
                                 packed.bead_in_slot};
-    add_forces<part, weight, across_periodic>(pass, law, i,
-                                              Liquid<SlotsOfBeads>{pass, in_range, law.attraction},
-                                              block.in_range_count(bead), total);
+    add_liquid_forces<part, weight, model, across_periodic>(pass, law, i, in_range,
+                                                            block.in_range_count(bead), total);
     if (wall_candidates > 0) {
       const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
-      add_forces<part, weight, across_periodic>(pass, wall_law, i, WallBeads{pass, packed.foreign_in_range},
-                                                count, total);
+      add_wall_forces<part, weight, model, across_periodic>(pass, wall_law, i, packed, count, total);
     }
     pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
   }
@@ -325,14 +422,14 @@ HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& bloc
   }
 }
 
-template <PairForce part, DissipativeWeight weight>
+template <PairForce part, DissipativeWeight weight, PairModel model>
 void force(const PairPass& pass, const NeighbourBlock& block) {
   const Packed packed = Workbench::of_this_thread().room_for(block);
   for (const NeighbourCell& cell : block.cells) {
     if (cell.across_periodic)
-      force_on_cell<part, weight, true>(pass, block, cell, packed);
+      force_on_cell<part, weight, model, true>(pass, block, cell, packed);
     else
-      force_on_cell<part, weight, false>(pass, block, cell, packed);
+      force_on_cell<part, weight, model, false>(pass, block, cell, packed);
     if (cell.first_body_run < cell.end_body_run) add_body_forces<part, weight>(pass, block, cell, packed);
   }
 }
@@ -376,18 +473,28 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
   }
 }
 
-template <DissipativeWeight weight>
+template <DissipativeWeight weight, PairModel model>
 Kernels table_for() {
   return {&density,
-          {&force<PairForce::all, weight>, &force<PairForce::conservative, weight>,
-           &force<PairForce::random, weight>, &force<PairForce::friction, weight>},
+          {&force<PairForce::all, weight, model>, &force<PairForce::conservative, weight, model>,
+           &force<PairForce::random, weight, model>, &force<PairForce::friction, weight, model>},
           &body_density,
           &body_force<weight>};
 }
 
-Kernels table(DissipativeWeight weight) {
-  return weight == DissipativeWeight::shared ? table_for<DissipativeWeight::shared>()
-                                             : table_for<DissipativeWeight::power>();
+Kernels table(DissipativeWeight weight, PairModel model) {
+  const bool shared = weight == DissipativeWeight::shared;
+  switch (model) {
+    case PairModel::one_liquid:
+      return shared ? table_for<DissipativeWeight::shared, PairModel::one_liquid>()
+                    : table_for<DissipativeWeight::power, PairModel::one_liquid>();
+    case PairModel::mixture:
+      return shared ? table_for<DissipativeWeight::shared, PairModel::mixture>()
+                    : table_for<DissipativeWeight::power, PairModel::mixture>();
+    case PairModel::spline:  // it shares no weight with friction, so that any s is the same work
+      break;
+  }
+  return table_for<DissipativeWeight::power, PairModel::spline>();
 }
 
 }  // namespace dmf::engine::HWY_NAMESPACE
@@ -414,13 +521,13 @@ std::vector<std::string> vector_kernels() {
   return names;
 }
 
-Kernels select_kernels(const std::string& name, DissipativeWeight weight) {
+Kernels select_kernels(const std::string& name, DissipativeWeight weight, PairModel model) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     if (name != "auto" && name != kernel_name(target)) continue;
     // Highway dispatches on a process-wide choice; make it only for this look-up.
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    const Kernels kernels = HWY_DYNAMIC_DISPATCH(table)(weight);
+    const Kernels kernels = HWY_DYNAMIC_DISPATCH(table)(weight, model);
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     return kernels;

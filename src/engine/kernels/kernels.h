@@ -29,6 +29,8 @@ struct PairPass {
   const Record* wall = nullptr;  ///< x, y, z, A_lw
   BodyPass bodies;
   PairTable laws;
+  const LawRow* rows = nullptr;  ///< by number of the liquid; of mixtures
+  SplineShape<double> spline{};
   double density_normalization = 0;
   PeriodicImages images;
   Eigen::Vector3f period = Eigen::Vector3f::Zero();  ///< 0 along axes that are not periodic
@@ -48,7 +50,8 @@ struct Kernels {
 
 /// Names that this processor can run, best first.
 std::vector<std::string> vector_kernels();
-/// The best, or the one named, for laws of that weight. @throws InvalidInput naming those there are.
-Kernels select_kernels(const std::string& name, DissipativeWeight weight);
+/// The best, or the one named, for laws of that weight and model. @throws InvalidInput naming those there
+/// are.
+Kernels select_kernels(const std::string& name, DissipativeWeight weight, PairModel model);
 
 }  // namespace dmf::engine

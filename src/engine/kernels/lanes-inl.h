@@ -61,6 +61,7 @@ struct UnsignedLanes {
 HWY_INLINE UnsignedLanes operator+(UnsignedLanes a, UnsignedLanes b) { return hn::Add(a.v, b.v); }
 HWY_INLINE UnsignedLanes operator*(UnsignedLanes a, UnsignedLanes b) { return hn::Mul(a.v, b.v); }
 HWY_INLINE UnsignedLanes operator^(UnsignedLanes a, UnsignedLanes b) { return hn::Xor(a.v, b.v); }
+HWY_INLINE UnsignedLanes operator&(UnsignedLanes a, UnsignedLanes b) { return hn::And(a.v, b.v); }
 HWY_INLINE UnsignedLanes operator>>(UnsignedLanes a, int bits) { return hn::ShiftRightSame(a.v, bits); }
 HWY_INLINE UnsignedLanes bits_of(Lanes a) { return hn::BitCast(UnsignedTag(), a.v); }
 HWY_INLINE UnsignedLanes load_lanes(const std::uint32_t* from) { return hn::LoadU(UnsignedTag(), from); }
@@ -80,6 +81,38 @@ HWY_INLINE double from_signed_bits<double, std::uint32_t>(std::uint32_t bits) {
 }
 HWY_INLINE double maximum(double a, double b) { return std::max(a, b); }
 HWY_INLINE double square_root(double a) { return std::sqrt(a); }
+
+/// Eight numbers that lanes look up in registers.
+class LaneTable {
+ public:
+  /// @param numbers  on a cache line; 16 may be read.
+#if HWY_TARGET == HWY_SCALAR
+  HWY_INLINE explicit LaneTable(const float* numbers) : numbers_(numbers) {}
+  HWY_INLINE Lanes operator[](UnsignedLanes index) const { return Lanes(numbers_[hn::GetLane(index.v)]); }
+
+ private:
+  const float* numbers_;
+#else
+  HWY_INLINE explicit LaneTable(const float* numbers)
+      : first_(hn::Load(FloatTag(), numbers)), second_(hn::Load(FloatTag(), numbers + 8 - half)) {}
+  /// @param index  below 8.
+  HWY_INLINE Lanes operator[](UnsignedLanes index) const {
+    if constexpr (lane_count >= 8) {
+      return hn::TableLookupLanes(first_, hn::IndicesFromVec(FloatTag(), index.v));
+    } else {
+      const UnsignedTag tag;
+      const auto order = hn::IndicesFromVec(FloatTag(), hn::And(index.v, hn::Set(tag, 3)));
+      const Mask in_first = hn::RebindMask(FloatTag(), hn::Lt(index.v, hn::Set(tag, 4)));
+      return hn::IfThenElse(in_first, hn::TableLookupLanes(first_, order),
+                            hn::TableLookupLanes(second_, order));
+    }
+  }
+
+ private:
+  static constexpr std::size_t half = lane_count >= 8 ? 8 : 4;  ///< a second register only where one is short
+  FloatVector first_, second_;
+#endif
+};
 
 /// `number` sums at once over terms k = 0, 1, 2, ..., added a register at a time. Whatever the width of a
 /// register, term k goes to partial sum k mod 16 and the partial sums are added in one order: every

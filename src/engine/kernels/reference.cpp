@@ -102,26 +102,40 @@ End body_end(const PairPass& pass, std::uint32_t i) {
 }
 End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
 
-template <PairForce part, DissipativeWeight weight>
-Vector3d force_between(const MdpdLaw<double>& law, double attraction, const Vector3d& d, const End& i,
-                       const End& j) {
+template <PairForce part, DissipativeWeight weight, class Law>
+Vector3d force_between(const Law& law, double attraction, const Vector3d& d, const End& i, const End& j) {
   const double r = std::max(d.norm(), 1e-6);
   const double approach = d.dot(i.velocity - j.velocity) / r;
   const double zeta = pair_noise<double>(i.key, j.key);
   return pair_force<part, weight>(law, attraction, r, i.density + j.density, approach, zeta) / r * d;
 }
 
+template <PairModel model>
+Species species_of(const PairPass& pass, std::uint32_t bead) {
+  if constexpr (model == PairModel::one_liquid)
+    return Species::liquid;
+  else
+    return liquid_species(key_bits(pass.position[bead].w) & species_bits);
+}
+
+template <PairModel model>
+auto law_between(const PairPass& pass, Species a, Species b) {
+  if constexpr (model == PairModel::spline)
+    return SplineLaw<double>{pass.laws(a, b), pass.spline};
+  else
+    return pass.laws(a, b);
+}
+
 Record record_of(const Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-template <PairForce part, DissipativeWeight weight>
+template <PairForce part, DissipativeWeight weight, PairModel model>
 void force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
-  const MdpdLaw<double>& wall_law = pass.laws(Species::liquid, Species::wall);
   const MdpdLaw<double>& body_law = pass.laws(Species::liquid, Species::microparticle);
   std::vector<Vector3d> total(block.end - block.begin, Vector3d::Zero());
   for_each_pair_in_range(block, [&](std::uint32_t bead, std::uint32_t other) {
+    const auto law = law_between<model>(pass, species_of<model>(pass, bead), species_of<model>(pass, other));
     total[bead - block.begin] += force_between<part, weight>(
         law, law.attraction, separation(pass, pass.position[bead], pass.position[other]),
         liquid_end(pass, bead), liquid_end(pass, other));
@@ -130,11 +144,15 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record& at = pass.position[bead];
       Vector3d& sum = total[bead - block.begin];
+      const Species species = species_of<model>(pass, bead);
+      const auto wall_law = law_between<model>(pass, species, Species::wall);
       for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
                         block.wall_runs.data() + cell.end_wall_run, at, wall_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          sum += force_between<part, weight>(wall_law, pass.wall[other].w, d,
-                                                             liquid_end(pass, bead), wall_end(other));
+                          const double attraction =
+                              species == Species::liquid ? double(pass.wall[other].w) : wall_law.attraction;
+                          sum += force_between<part, weight>(wall_law, attraction, d, liquid_end(pass, bead),
+                                                             wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
                         block.body_runs.data() + cell.end_body_run, at, body_law.range(),
@@ -171,20 +189,27 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
     }
 }
 
-template <DissipativeWeight weight>
+template <DissipativeWeight weight, PairModel model>
 Kernels kernels() {
   return {&density,
-          {&force<PairForce::all, weight>, &force<PairForce::conservative, weight>,
-           &force<PairForce::random, weight>, &force<PairForce::friction, weight>},
+          {&force<PairForce::all, weight, model>, &force<PairForce::conservative, weight, model>,
+           &force<PairForce::random, weight, model>, &force<PairForce::friction, weight, model>},
           &body_density,
           &body_force<weight>};
 }
 
+template <DissipativeWeight weight>
+Kernels kernels_of(PairModel model) {
+  return model == PairModel::one_liquid ? kernels<weight, PairModel::one_liquid>()
+         : model == PairModel::mixture  ? kernels<weight, PairModel::mixture>()
+                                        : kernels<weight, PairModel::spline>();
+}
+
 }  // namespace
 
-Kernels reference_kernels(DissipativeWeight weight) {
-  return weight == DissipativeWeight::shared ? kernels<DissipativeWeight::shared>()
-                                             : kernels<DissipativeWeight::power>();
+Kernels reference_kernels(DissipativeWeight weight, PairModel model) {
+  return weight == DissipativeWeight::shared ? kernels_of<DissipativeWeight::shared>(model)
+                                             : kernels_of<DissipativeWeight::power>(model);
 }
 
 }  // namespace dmf::engine

@@ -5,6 +5,6 @@ namespace dmf::engine {
 
 /// The same three loops in plain scalar double precision, without lanes: the oracle for the vector kernels,
 /// and what they are timed against.
-Kernels reference_kernels(DissipativeWeight weight);
+Kernels reference_kernels(DissipativeWeight weight, PairModel model);
 
 }  // namespace dmf::engine

@@ -98,6 +98,12 @@ std::vector<Eigen::Vector2f> convex_outline(const std::vector<Eigen::Vector2d>& 
   return outline;
 }
 
+/// A film or a medium from side to side has no edge that could show an angle.
+bool fills_box(const DropletObservation& droplet, const Domain& domain) {
+  const Vector3d size = droplet.upper - droplet.lower;
+  return size.x() > domain.size().x() - 1 && size.y() > domain.size().y() - 1;
+}
+
 }  // namespace
 
 DropletTracker::DropletTracker(const Parameters& parameters)
@@ -162,7 +168,8 @@ std::vector<DropletTracker::Component> DropletTracker::connected_components(
   ConnectedBeads connected(beads.size());
   for (const NeighbourBlock& block : blocks)
     for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
-      if (j < i && !connected.joined(i, j)) connected.join(i, j, image(beads.position[i], beads.position[j]));
+      if (j < i && beads.species_of(i) == beads.species_of(j) && !connected.joined(i, j))
+        connected.join(i, j, image(beads.position[i], beads.position[j]));
     });
 
   std::vector<std::uint32_t> beads_of_root(beads.size(), 0);
@@ -254,7 +261,8 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   droplet.id = component.id;
   droplet.parents = memory.parents;
   droplet.beads = component.beads.size();
-  droplet.volume = count / parameters_.liquid.bulk_density;
+  droplet.species = beads.species_of(component.beads.front());
+  droplet.volume = count / bulk_density(parameters_, droplet.species);
 
   Vector3d velocity = Vector3d::Zero();
   droplet.lower = droplet.upper = component.positions.front().cast<double>();
@@ -280,7 +288,8 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   // The circle is fitted to a cap. Between two plates there is none: no angle is better than a wrong one.
   const Domain& domain = parameters_.domain;
   const bool reaches_top = domain.has_top_plate() && droplet.upper.z() > domain.upper.z() - wetting_height;
-  if (droplet.footprint_area > 0 && !reaches_top) measure_angles(droplet, component, elapsed);
+  if (droplet.footprint_area > 0 && !reaches_top && !fills_box(droplet, domain))
+    measure_angles(droplet, component, elapsed);
 
   // Reported inside the box, although measured on the unwrapped droplet.
   for (int axis = 0; axis < 3; ++axis)
@@ -308,7 +317,7 @@ void DropletTracker::measure_angles(DropletObservation& droplet, const Component
   angles.begin_sample(elapsed, parameters_.angle_window);
   const Vector3d foot(droplet.centroid.x(), droplet.centroid.y(), wall_plane_);
   for (const Eigen::Vector3f& position : component.positions) angles.add(position.cast<double>() - foot);
-  if (const auto found = angles.angles(parameters_.liquid.bulk_density)) {
+  if (const auto found = angles.angles(bulk_density(parameters_, droplet.species))) {
     droplet.advancing_angle = found->advancing;
     droplet.receding_angle = found->receding;
     droplet.contact_angle = 0.5 * (found->advancing + found->receding);
@@ -319,6 +328,7 @@ namespace {
 
 void archive_droplet(Archive& archive, DropletObservation& droplet) {
   archive(droplet.id);
+  archive(droplet.species);
   archive(droplet.parents);
   archive(droplet.beads);
   for (Vector3d* vector : {&droplet.centroid, &droplet.velocity, &droplet.lower, &droplet.upper})
@@ -385,6 +395,9 @@ void DropletTracker::require_sound() const {
       throw InvalidInput(
           fmt::format("saved state: droplet {}, allowed: rising ids that are there", droplet.id));
     before = droplet.id;
+    if (droplet.species > parameters_.mixture.liquids.size())
+      throw InvalidInput(fmt::format("saved state: species {}, allowed: 0 to {}", droplet.species,
+                                     parameters_.mixture.liquids.size()));
     bool finite = droplet.centroid.allFinite() && droplet.velocity.allFinite() && droplet.lower.allFinite() &&
                   droplet.upper.allFinite();
     for (const Eigen::Vector2f& corner : droplet.footprint) finite = finite && corner.allFinite();

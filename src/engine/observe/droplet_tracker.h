@@ -13,9 +13,10 @@
 
 namespace dmf::engine {
 
-/// Finds droplets and keeps their identity. A droplet is a set of at least `fewest_beads` beads connected by
-/// distances below r_c. Looks at the beads at fixed steps, so that ids, events and running averages are
-/// functions of the run and not of who watches it.
+/// Finds droplets and keeps their identity. A droplet is a set of at least `fewest_beads` beads of one liquid
+/// connected by distances below r_c; in a mixture a medium that fills the box is one, too. Looks at the beads
+/// at fixed steps, so that ids, events and running averages are functions of the run and not of who watches
+/// it.
 ///
 /// Identity: a droplet's heir is the component that holds most of its beads. A component goes on under the id
 /// of the largest droplet whose heir it is; others whose heir it is too have merged into it. A component that

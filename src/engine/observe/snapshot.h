@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 
 /// One droplet as the tracker last saw it. Reduced units, angles in degrees.
 struct DropletObservation {
-  std::uint32_t id = 0;  ///< from 1, persistent, never used twice in a run
+  std::uint32_t id = 0;       ///< from 1, persistent, never used twice in a run
+  std::uint32_t species = 0;  ///< number of its liquid (mixture.h)
   std::vector<std::uint32_t>
       parents;  ///< droplets that it came from by merge or split; empty for a dispensed one
   std::size_t beads = 0;
@@ -70,6 +71,7 @@ struct Snapshot {
   std::vector<Eigen::Vector3f> velocities;
   std::vector<std::uint32_t> bead_ids;
   std::vector<std::uint32_t> bead_droplets;  ///< droplet id, 0 for vapour
+  std::vector<std::uint8_t> bead_species;    ///< number of the liquid; empty while all are the first one
   std::vector<float> bead_virials;  ///< a third of the trace of each bead's share; empty unless asked for
 };
 

@@ -45,7 +45,7 @@ std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const Plates& w
     hash = fold(hash, p.z, v.x);
     hash = fold(hash, v.y, v.z);
     hash = fold(hash, f.x, f.y);
-    sum += fold(hash, f.z, 0.f);
+    sum += fold(hash, f.z, beads.species_of(static_cast<std::size_t>(i)));
   }
   std::uint64_t hash = mix64(sum);
   for (const Record& bead : wall.beads()) hash = fold(hash, bead.w, 0.f);

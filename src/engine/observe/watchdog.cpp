@@ -104,10 +104,11 @@ std::string fault_of_vapour(const Parameters& parameters, const DropletTracker& 
     const double share = static_cast<double>(count) / static_cast<double>(count + left);
     if (share <= parameters.watchdog.evaporation) continue;
     return fmt::format(
-        "droplet {} {}: {} of its {} beads have evaporated, allowed: {:.3g} %; look at the liquid's "
+        "droplet {} {}: {} of its {} beads have evaporated{}, allowed: {:.3g} %; look at the liquid's "
         "temperature ({}) and attraction ({}), and watchdog.evaporation",
-        id, place, count, count + left, 100 * parameters.watchdog.evaporation, parameters.liquid.temperature,
-        parameters.liquid.attraction);
+        id, place, count, count + left,
+        parameters.mixture.liquids.empty() ? "" : " or dissolved in other liquids",
+        100 * parameters.watchdog.evaporation, parameters.liquid.temperature, parameters.liquid.attraction);
   }
   return "";
 }

@@ -38,8 +38,9 @@ WettedArea wetted_area(const Beads& beads, double plane, const Parameters& param
   const PlateCells cells(parameters.domain);
   std::vector<std::pair<int, int>> low;  // cells of the beads near the plate
   int lower_column = cells.columns, upper_column = -1, lower_row = cells.rows, upper_row = -1;
-  for (const Record& bead : beads.position) {
-    if (bead.z - plane >= kWettingHeight) continue;
+  for (std::size_t i = 0; i < beads.size(); ++i) {
+    const Record& bead = beads.position[i];
+    if (bead.z - plane >= kWettingHeight || beads.species_of(i) != 0) continue;
     const int column =
         cell_index(bead.x, cells.lower_x, cells.length_x, cells.columns, parameters.domain.periodic(0));
     const int row =

@@ -27,7 +27,9 @@ struct WettedArea {
   bool at(int column, int row) const;  ///< of PlateCells
 };
 
-/// A cell is wet when the beads within 1 r_c of the plate over it are at least half as many as in the bulk.
+/// Of a mixture only the first liquid wets: it is the one that conducts, and what others cover counts as the
+/// filler around it. A cell is wet when the beads within 1 r_c of the plate over it are at least half as many
+/// as in the bulk.
 /// @param plane  z of the plate, r_c.
 WettedArea wetted_area(const Beads& beads, double plane, const Parameters& parameters);
 
