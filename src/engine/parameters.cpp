@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/memory.h"
+#include "engine/walls/violations.h"
 
 namespace dmf::engine {
 namespace {
@@ -130,6 +131,7 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("max_memory", parameters.max_memory, 10, 1e6, "10 to 1000000 (MB)");
   check_watchdog(parameters.watchdog, check);
   // A domain that is out of range is told already.
+  if (found.empty()) found = label_grid_violations(parameters);
   if (found.empty()) check_memory(parameters, check);
   return found;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/walls/label_grid.h"
 #include "yaml/invalid_input.h"
 
 namespace dmf::engine {
@@ -115,6 +116,7 @@ struct WatchdogParameters {
 struct Parameters {
   LiquidParameters liquid;
   WallParameters wall;
+  LabelGridParameters label_grid;
   MicroparticleParameters microparticles;
   Domain domain;
   double time_step = 0.01;  ///< Delta t, tau; (0, 0.1]
