@@ -10,7 +10,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 packages=(
   g++ cmake make ca-certificates
   # the engine and the chip
-  libeigen3-dev libhwy-dev libyaml-cpp-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev libboost-dev
+  libeigen3-dev libhwy-dev libyaml-cpp-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev libpng-dev libboost-dev
   # pictures
   python3-numpy python3-matplotlib
 )

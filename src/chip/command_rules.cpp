@@ -8,6 +8,7 @@
 
 #include "chip/command_reader.h"
 #include "chip/polygon.h"
+#include "engine/placement.h"
 
 namespace dmf::chip {
 
@@ -314,6 +315,13 @@ std::vector<std::string> violations(const engine::DropletPlacement& placement, c
       found.push_back(fmt::format("centre's {} {}: allowed {} to {} for a radius of {}", kAxes[axis],
                                   length_text(centre, scene.units), length_text(lower, scene.units),
                                   length_text(upper, scene.units), length_text(reach, scene.units)));
+    }
+  }
+  if (found.empty() && scene.parameters.label_grid.grid) {
+    try {
+      engine::droplet_sites(placement, scene.parameters);
+    } catch (const engine::InvalidInput& refusal) {
+      found.push_back(refusal.what());
     }
   }
   return found;

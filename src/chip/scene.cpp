@@ -9,6 +9,7 @@
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
 #include "chip/configuration.h"
+#include "chip/scene_label_grid.h"
 #include "chip/scene_mixture.h"
 #include "chip/scene_sections.h"
 #include "engine/yaml_reader.h"
@@ -107,6 +108,7 @@ Scene read_scene(SceneFiles files) {
   scene.default_duration = root.quantity("duration", Dimension::time, Range::at_least(0), 100.0);
 
   const auto curve = read_wettability(root, scene);
+  read_label_grid(root, scene);
   const bool has_layout = read_chip(root, scene);
   read_droplets(root, scene);
   read_microparticles(root, scene);

@@ -18,6 +18,8 @@ constexpr const char* kScene = "scene";
 constexpr const char* kBoard = "board";
 constexpr const char* kCalibration = "calibration";
 constexpr const char* kMicroparticleCalibration = "microparticle_calibration";
+/// A raw file; pictures are label_grid_0 and so on.
+constexpr const char* kLabelGrid = "label_grid";
 }  // namespace file_role
 
 /// All the texts that make up a scene, so that it can be built again from them alone: where the files were

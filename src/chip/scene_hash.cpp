@@ -90,6 +90,13 @@ class Digest {
     const auto& [lattice_constant, layers, top_contact_angle] = wall;
     (*this)(lattice_constant, layers, top_contact_angle);
   }
+  void add(const engine::LabelGridParameters& solid) {
+    const auto& [grid, lattice_constant, contact_angle, attraction] = solid;
+    (*this)(lattice_constant, contact_angle, attraction);
+    if (!grid) return;
+    const auto& [origin, voxel_size, voxels, labels] = *grid;
+    (*this)(origin, voxel_size, voxels, labels);
+  }
   void add(const engine::MicroparticleParameters& model) {
     const auto& [contact, elastic_modulus, contact_damping, wall_attraction, liquid_repulsion,
                  particle_adhesion, counts_own_beads, counts_liquid, counted_by_liquid] = model;
@@ -167,9 +174,9 @@ SceneContent content_of(const Scene& scene) {
   const auto& [name, description, source, files, parameters, units, calibration_file, electrowetting, rail,
                sensing, board, layout, program, default_duration, settle_time, droplets, fills,
                microparticle_calibration, microparticles, body_forces, schedule, patterns] = scene;
-  const auto& [liquid, wall, microparticle_model, domain, time_step, integrator, integrator_lambda, list_skin,
-               seed, observe_interval, angle_window, max_beads, max_memory, watchdog, mixture, spline] =
-      parameters;
+  const auto& [liquid, wall, label_grid, microparticle_model, domain, time_step, integrator,
+               integrator_lambda, list_skin, seed, observe_interval, angle_window, max_beads, max_memory,
+               watchdog, mixture, spline] = parameters;
   SceneContent content;
   content["liquid"] = digest(liquid);
   // What a scene does not use is no part of it: its saved runs are those of the same scene before.
@@ -178,6 +185,7 @@ SceneContent content_of(const Scene& scene) {
   if (spline.used) content["spline"] = digest(spline);
   if (!fills.empty()) content["fills"] = digest(fills);
   content["wall"] = digest(wall);
+  if (label_grid.grid) content["label_grid"] = digest(label_grid);
   content["microparticle_model"] = digest(microparticle_model, digest_of_microparticle_curve(scene));
   content["domain"] = digest(domain);
   content["engine"] =

@@ -473,6 +473,10 @@ void check_angles(const YamlReader& root, const Scene& scene, const engine::Cont
   if (scene.parameters.domain.has_top_plate() && !inside(top)) {
     root.report_path(fmt::format("wettability.top_angle: {} degrees, {}", top, allowed));
   }
+  const engine::LabelGridParameters& solid = scene.parameters.label_grid;
+  if (solid.grid && !solid.attraction && !inside(solid.contact_angle)) {
+    root.report_path(fmt::format("label_grid.contact_angle: {} degrees, {}", solid.contact_angle, allowed));
+  }
   const double lowest = law.contact_angle(law.max_voltage);
   if (!scene.layout.electrodes().empty() && !inside(lowest)) {
     root.report_path(fmt::format("chip.electrowetting.max_voltage: {} V leads to {:.4g} degrees, {}",

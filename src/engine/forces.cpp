@@ -38,7 +38,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   constants_.images = PeriodicImages(constants_.period);
 }
 
-PairPass Forces::pass_over(Beads& beads, const Plates& wall, Microparticles& bodies) const {
+PairPass Forces::pass_over(Beads& beads, const Walls& wall, Microparticles& bodies) const {
   PairPass pass = constants_;
   pass.rows = rows_.data();
   pass.position = beads.position.data();
@@ -53,7 +53,7 @@ PairPass Forces::pass_over(Beads& beads, const Plates& wall, Microparticles& bod
   return pass;
 }
 
-void Forces::density(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs) const {
+void Forces::density(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const {
   const PairPass pass = pass_over(beads, wall, bodies);
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
@@ -64,7 +64,7 @@ void Forces::density(Beads& beads, const Plates& wall, Microparticles& bodies, P
   add_smooth_densities(pass, bodies, pairs);
 }
 
-void Forces::force(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs) const {
+void Forces::force(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const {
   force(PairForce::all, beads.force, beads, wall, bodies, pairs);
   const PairPass pass = pass_over(beads, wall, bodies);
   const std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
@@ -73,7 +73,7 @@ void Forces::force(Beads& beads, const Plates& wall, Microparticles& bodies, Pai
   add_smooth_forces(pass, bodies, pairs);
 }
 
-void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Plates& wall,
+void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall,
                    Microparticles& bodies, Pairs& pairs) const {
   to.resize(beads.size());
   PairPass pass = pass_over(beads, wall, bodies);

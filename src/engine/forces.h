@@ -6,7 +6,7 @@
 #include "engine/kernels/kernels.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 
 namespace dmf::engine {
 
@@ -18,19 +18,19 @@ class Forces {
   Forces(const Parameters& parameters, const std::string& kernel);
 
   /// rho of every bead, and who is in range now.
-  void density(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs) const;
+  void density(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const;
   /// Forces of every bead; needs density().
-  void force(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs) const;
+  void force(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const;
   /// One part of the liquid's: `to` gets the sums. Random forces need who is in range (density()) and keys,
   /// friction besides the velocities in `beads.predicted`.
-  void force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Plates& wall,
+  void force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall,
              Microparticles& bodies, Pairs& pairs) const;
 
   const Kernels& kernels() const { return kernels_; }
   const std::string& kernel_name() const { return kernel_name_; }
 
  private:
-  PairPass pass_over(Beads& beads, const Plates& wall, Microparticles& bodies) const;
+  PairPass pass_over(Beads& beads, const Walls& wall, Microparticles& bodies) const;
 
   Kernels kernels_;
   std::string kernel_name_;

@@ -53,7 +53,24 @@ struct Drift {
   float prediction;  ///< predicted = v' + prediction f
 };
 
-DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift) {
+/// Turns a bead back that would enter a solid voxel before it crosses a side. @returns whether it did.
+bool bounce_off(const Solid& solid, const Planes& planes, const float* from, const float* way, float* at) {
+  const Eigen::Map<const Eigen::Vector3f> start(from), path(way);
+  const float free = solid.free_fraction(start, path);
+  if (free >= 1.f || free > fraction_to_plane(planes, from, way)) return false;
+  Eigen::Map<Eigen::Vector3f>(at, 3) = start + (2.f * free - 1.f) * path;
+  return true;
+}
+
+/// Is the straight way there open? A bead that bounced can come to the back of where it was.
+bool reached(const Solid& solid, const Planes& planes, const float* from, const float* at) {
+  const Eigen::Map<const Eigen::Vector3f> start(from), end(at);
+  return !solid.contains(end) && solid.free_fraction(start, end - start) >= 1.f && !outside(planes, at);
+}
+
+template <bool with_solid>
+DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift,
+                 const Solid& solid) {
   const StepKey key = step_key(parameters.seed, step, Stream::pair);
   const Planes planes = planes_of(parameters.domain);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
@@ -69,8 +86,13 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
                      kicked[2] + drift.prediction * f.z};
     const float way[3] = {drift.travel * kicked[0], drift.travel * kicked[1], drift.travel * kicked[2]};
     float at[3] = {p.x + way[0], p.y + way[1], p.z + way[2]};
-    if (outside(planes, at)) {
-      const float from[3] = {p.x, p.y, p.z};
+    const float from[3] = {p.x, p.y, p.z};
+    if (with_solid && bounce_off(solid, planes, from, way, at)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        kicked[axis] = -kicked[axis];
+        seen[axis] = -seen[axis];
+      }
+    } else if (outside(planes, at)) {
       const float travelled = 2.f * fraction_to_plane(planes, from, way) - 1.f;
       for (int axis = 0; axis < 3; ++axis) {
         at[axis] = std::clamp(from[axis] + way[axis] * travelled, planes.lower[axis], planes.upper[axis]);
@@ -78,6 +100,7 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
         seen[axis] = -seen[axis];
       }
     }
+    if (with_solid && !reached(solid, planes, from, at)) std::copy_n(from, 3, at);
     const float moved = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
     if (!(moved < largest_step * largest_step)) wild = std::max<std::int64_t>(wild, i);
     const Record& listed = beads.listed[i];
@@ -106,12 +129,18 @@ void note_species(Beads& beads, const Parameters& parameters) {
   }
 }
 
+DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift,
+                 const Solid& solid) {
+  return solid.empty() ? move<false>(beads, parameters, step, drift, solid)
+                       : move<true>(beads, parameters, step, drift, solid);
+}
+
 }  // namespace
 
-DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
   const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
-  const DriftReport report = move(beads, parameters, step, {0.5f * dt, dt, prediction});
+  const DriftReport report = move(beads, parameters, step, {0.5f * dt, dt, prediction}, solid);
   note_species(beads, parameters);
   return report;
 }
@@ -137,16 +166,17 @@ void finish(Beads& beads, const Parameters& parameters) {
   }
 }
 
-DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,
+                                const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
-  const DriftReport report = move(beads, parameters, step, {dt, 0.5f * dt, 0.f});
+  const DriftReport report = move(beads, parameters, step, {dt, 0.5f * dt, 0.f}, solid);
   note_species(beads, parameters);
   return report;
 }
 
-DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
+DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
-  const DriftReport report = move(beads, parameters, step, {0.f, 0.5f * dt, 0.f});
+  const DriftReport report = move(beads, parameters, step, {0.f, 0.5f * dt, 0.f}, solid);
   note_species(beads, parameters);
   return report;
 }

@@ -3,6 +3,7 @@
 
 #include "engine/beads.h"
 #include "engine/parameters.h"
+#include "engine/walls/solid.h"
 
 namespace dmf::engine {
 
@@ -19,8 +20,9 @@ constexpr float largest_step = 0.5f;
 /// velocity that the forces shall see,
 ///   v' = v + dt/2 f,  r += dt v',  predicted = v + lambda dt f.
 /// A bead that would leave through a side that is not periodic goes back along its path with reversed
-/// velocity (bounce-back: no slip on average). Sets the beads' noise keys for `step`.
-DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
+/// velocity (bounce-back: no slip on average); so does one that would enter a solid voxel. Sets the beads'
+/// noise keys for `step`.
+DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid = {});
 
 /// Adds gravity, r_c / tau^2, to the forces.
 void add_gravity(Beads& beads, const Vector3d& gravity);
@@ -37,7 +39,9 @@ void finish(Beads& beads, const Parameters& parameters);
 /// So between two steps the velocities are those of the drift, half a kick behind the positions. That is what
 /// carries momentum and energy from place to place: the temperature and stress that it gives are right to
 /// higher order in dt than those of the velocity after a half kick. Bounce-back and noise keys as in drift().
-DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
-DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step);
+DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,
+                                const Solid& solid = {});
+DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,
+                       const Solid& solid = {});
 
 }  // namespace dmf::engine

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/walls/solid_beads.h"
+
 namespace dmf::engine {
 namespace {
 
@@ -26,7 +28,8 @@ double wall_beads(const Parameters& parameters) {
   const auto cells_along = [&](int axis) {
     return std::max(1.0, std::round(size[axis] / parameters.wall.lattice_constant));
   };
-  return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1);
+  return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1) +
+         static_cast<double>(count_solid_beads(parameters));
 }
 
 MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads) {
@@ -35,6 +38,10 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   MemoryNeed need;
   need.program = of_program;
   need.wall = wall_beads(parameters) * of_wall_bead;
+  if (const LabelGrid* grid = parameters.label_grid.grid.get()) {
+    const Vector3d size = grid->upper() - grid->origin;
+    need.wall += static_cast<double>(grid->labels.size()) + (size / edge).array().max(1.0).prod() * of_cell;
+  }
   need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
   need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0) +
                                 (parameters.mixture.liquids.empty() ? 0 : of_species));

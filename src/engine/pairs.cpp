@@ -79,7 +79,7 @@ void Pairs::lay_grid(const AlignedVector<Record>& positions) {
     grid_.lay(domain_, bounds.lower, bounds.upper, range_);
 }
 
-void Pairs::rebuild(Beads& beads, const Plates& wall) {
+void Pairs::rebuild(Beads& beads, const Walls& wall) {
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
@@ -96,7 +96,7 @@ void Pairs::rebuild(Beads& beads, const Plates& wall) {
   ++builds_;
 }
 
-void Pairs::restore(const Beads& beads, const Plates& wall) {
+void Pairs::restore(const Beads& beads, const Walls& wall) {
   // `listed` is sorted already; sorting it again is the identity, and gives the grid back.
   lay_grid(beads.listed);
   grid_.sort(beads.listed.data(), beads.size(), order_);
@@ -105,7 +105,7 @@ void Pairs::restore(const Beads& beads, const Plates& wall) {
   find_neighbourhoods(beads.listed, wall);
 }
 
-void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const Plates& wall) {
+void Pairs::find_neighbourhoods(const AlignedVector<Record>& listed, const Walls& wall) {
   divide_into_blocks();
   std::uint32_t most = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
@@ -144,7 +144,7 @@ void Pairs::divide_into_blocks() {
 }
 
 void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
-                      const Plates& wall) const {
+                      const Walls& wall) const {
   Bounds around = bounds_of(listed, cell.begin, cell.end);
   around.lower.array() -= static_cast<float>(range_);
   around.upper.array() += static_cast<float>(range_);
@@ -167,7 +167,7 @@ void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedV
   block.in_range_begin.resize(block.end - block.begin + 1);
 }
 
-void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const Plates& wall) {
+void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const Walls& wall) {
   forget_bodies();
   std::vector<PatchedBody> patched;
   std::uint32_t most = 0;

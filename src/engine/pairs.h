@@ -7,7 +7,7 @@
 #include "engine/cell_grid.h"
 #include "engine/neighbours.h"
 #include "engine/parameters.h"
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 
 namespace dmf::engine {
 
@@ -36,16 +36,16 @@ class Pairs {
   /// Wraps beads into periodic sides and sorts them by cell. The order is a function of positions and
   /// previous order only. @throws std::length_error when more beads crowd around a cell than slots can
   /// number.
-  void rebuild(Beads& beads, const Plates& wall);
+  void rebuild(Beads& beads, const Walls& wall);
 
   /// Finds the cells again from `beads.listed`, in the present order: restores a saved state to the bit.
   /// @throws InvalidInput when that is not the order of these cells.
-  void restore(const Beads& beads, const Plates& wall);
+  void restore(const Beads& beads, const Walls& wall);
 
   /// Notes which patches of microparticles are near which cells, and what liquid and wall are near which
   /// patches, from where they are now. After each rebuild() or restore(), when there are microparticles.
   /// @throws std::length_error as rebuild().
-  void find_bodies(const Microparticles& bodies, const Beads& beads, const Plates& wall);
+  void find_bodies(const Microparticles& bodies, const Beads& beads, const Walls& wall);
 
   void forget_bodies() {
     body_blocks_.clear();
@@ -62,11 +62,11 @@ class Pairs {
 
  private:
   void lay_grid(const AlignedVector<Record>& positions);
-  void find_neighbourhoods(const AlignedVector<Record>& listed, const Plates& wall);
+  void find_neighbourhoods(const AlignedVector<Record>& listed, const Walls& wall);
   void divide_into_blocks();
   /// `listed` is where the beads of the cell were when they were sorted.
   void find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
-                 const Plates& wall) const;
+                 const Walls& wall) const;
   void find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
                       const std::vector<PatchedBody>& bodies) const;
 

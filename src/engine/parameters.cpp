@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/memory.h"
+#include "engine/walls/violations.h"
 
 namespace dmf::engine {
 namespace {
@@ -132,6 +133,7 @@ std::vector<std::string> violations(const Parameters& parameters) {
   for (const auto& violations : {mixture_violations(parameters), spline_violations(parameters)})
     found.insert(found.end(), violations.begin(), violations.end());
   // A domain that is out of range is told already.
+  if (found.empty()) found = label_grid_violations(parameters);
   if (found.empty()) check_memory(parameters, check);
   return found;
 }

@@ -9,6 +9,7 @@
 
 #include "engine/mixture.h"
 #include "engine/spline.h"
+#include "engine/walls/label_grid.h"
 #include "yaml/invalid_input.h"
 
 namespace dmf::engine {
@@ -117,6 +118,7 @@ struct WatchdogParameters {
 struct Parameters {
   LiquidParameters liquid;
   WallParameters wall;
+  LabelGridParameters label_grid;
   MicroparticleParameters microparticles;
   Domain domain;
   double time_step = 0.01;  ///< Delta t, tau; (0, 0.1]

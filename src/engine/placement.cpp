@@ -10,6 +10,7 @@
 #include "engine/memory.h"
 #include "engine/noise.h"
 #include "engine/observe/droplet_tracker.h"
+#include "engine/walls/solid.h"
 
 namespace dmf::engine {
 namespace {
@@ -190,6 +191,12 @@ std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Par
   if (sites.size() < DropletTracker::fewest_beads)
     throw InvalidInput(fmt::format("droplet: {} beads, allowed: {} or more (a radius of about 1 r_c)",
                                    sites.size(), DropletTracker::fewest_beads));
+  const Solid solid(parameters);
+  for (const Vector3d& site : sites)
+    if (solid.contains(site.cast<float>()))
+      throw InvalidInput(fmt::format(
+          "droplet: ({:.2f}, {:.2f}, {:.2f}) r_c is in the solid of the label grid, allowed: outside of it",
+          site.x(), site.y(), site.z()));
   return sites;
 }
 
@@ -205,8 +212,12 @@ std::vector<Vector3d> slab_sites(const FillPlacement& placement, const Parameter
   const Vector3d size = upper - lower;
   const Vector3d cells = (size / a).array().round().max(1.0);
   std::vector<Vector3d> sites;
-  for_each_site(lower, upper, size.cwiseQuotient(cells),
-                [&](const Vector3d& site) { sites.push_back(site); });
+  const Solid solid(parameters);
+  for_each_site(lower, upper, size.cwiseQuotient(cells), [&](const Vector3d& site) {
+    if (!solid.contains(site.cast<float>())) sites.push_back(site);
+  });
+  if (sites.empty())
+    throw InvalidInput("slab: no fluid voxel in it, allowed: with some, to hold a bead or more");
   return sites;
 }
 

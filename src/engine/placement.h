@@ -11,11 +11,12 @@ namespace dmf::engine {
 
 /// Lattice sites (fcc, of the initial density) of a droplet: the sphere without what lies within half a
 /// lattice constant of a wall plane, or of a pancake as many sites as the sphere would have. @throws
-/// InvalidInput outside the domain, or for fewer than DropletTracker::fewest_beads sites.
+/// InvalidInput outside the domain, in the solid of a label grid, or for fewer than
+/// DropletTracker::fewest_beads sites.
 std::vector<Vector3d> droplet_sites(const DropletPlacement& placement, const Parameters& parameters);
 
-/// Lattice sites that fill lower <= position < upper. @throws InvalidInput when that leaves the domain or
-/// holds none.
+/// Lattice sites that fill lower <= position < upper but for the solid of a label grid. @throws InvalidInput
+/// when that leaves the domain or holds none.
 std::vector<Vector3d> slab_sites(const FillPlacement& placement, const Parameters& parameters);
 
 /// The same without those nearer than half a lattice constant to a bead, or half an r_c to a microparticle.

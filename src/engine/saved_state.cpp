@@ -5,11 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/walls/solid.h"
+
 namespace dmf::engine {
 namespace {
 
 /// How far a bead may be beyond a periodic side before it is wrapped, and a rounding error, r_c.
 constexpr double bead_margin = 1.0;
+constexpr float solid_margin = 1e-3f;  ///< of a rounding error, r_c
 
 bool finite(const Record& record) {
   return std::isfinite(record.x) && std::isfinite(record.y) && std::isfinite(record.z);
@@ -54,7 +57,12 @@ void require_sound(const Beads& beads, std::uint32_t next_bead_id, const Droplet
           fmt::format("saved state: bead {}, allowed: each id below {} once", id, next_bead_id));
     taken[id] = true;
   }
+  const Solid solid(parameters);
   for (std::size_t i = 0; i < beads.size(); ++i) {
+    const Record& p = beads.position[i];
+    if (!solid.empty() && solid.contains_deep({p.x, p.y, p.z}, solid_margin))
+      throw InvalidInput(
+          fmt::format("saved state: bead {} is in the solid, allowed: outside of it", beads.id[i]));
     require_inside(beads.position[i], bead_margin, domain);
     require_inside(beads.listed[i], bead_margin, domain);
     if (!finite(beads.predicted[i]) || !finite(beads.velocity[i]) || !finite(beads.force[i]))

@@ -23,7 +23,7 @@
 #include "engine/placement.h"
 #include "engine/saved_state.h"
 #include "engine/thermostat.h"
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 
 namespace dmf::engine {
 namespace {
@@ -43,7 +43,7 @@ struct Simulation::State {
       : parameters(checked(p)),
         curve(std::move(c)),
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
-        wall(parameters.domain, parameters.wall, parameters.liquid.range() + parameters.list_skin),
+        wall(parameters),
         microparticles(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),
@@ -52,7 +52,7 @@ struct Simulation::State {
   Parameters parameters;
   ContactAngleCurve curve;
   int threads;
-  Plates wall;
+  Walls wall;
   Beads beads;
   Microparticles microparticles;
   Pairs pairs;
@@ -216,7 +216,7 @@ Simulation::Simulation(const Parameters& parameters, ContactAngleCurve curve, co
     state_->wall.set_attraction(std::vector<float>(state_->wall.size(), attraction));
     return;
   }
-  state_->wall.set_top_wettability(parameters.wall.top_contact_angle, state_->curve);
+  state_->wall.set_fixed_wettability(parameters, state_->curve);
   const double angle = state_->curve.max_angle();
   set_wettability([angle](double, double) { return angle; });
 }
@@ -230,7 +230,7 @@ void Simulation::step() {
 
   // Voltages have become wettability in set_wettability(), between steps.
   if (s.parameters.integrator == Integrator::groot_warren) {
-    const DriftReport moved = drift(s.beads, s.parameters, s.step);
+    const DriftReport moved = drift(s.beads, s.parameters, s.step, s.wall.solid());
     s.keep_pairs(moved, s.microparticles.drift());
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
@@ -238,9 +238,9 @@ void Simulation::step() {
     finish(s.beads, s.parameters);
     s.microparticles.finish(s.far);
   } else {
-    s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step));
+    s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step, s.wall.solid()));
     thermostat(s.beads, s.wall, s.microparticles, s.pairs, s.forces, s.parameters);
-    s.keep_pairs(half_drift(s.beads, s.parameters, s.step));
+    s.keep_pairs(half_drift(s.beads, s.parameters, s.step, s.wall.solid()));
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);

@@ -22,7 +22,7 @@ void combine(Beads& beads, float of_velocity, float of_random, float of_force, T
 
 }  // namespace
 
-void thermostat(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs, const Forces& forces,
+void thermostat(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs, const Forces& forces,
                 const Parameters& parameters) {
   const float dt = static_cast<float>(parameters.time_step);
   const auto seen = [&](std::ptrdiff_t i) -> Record& { return beads.predicted[i]; };

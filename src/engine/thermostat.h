@@ -3,7 +3,7 @@
 #include "engine/forces.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 
 namespace dmf::engine {
 
@@ -27,7 +27,7 @@ namespace dmf::engine {
 ///
 /// Needs the noise keys of the step; leaves densities of these positions, `beads.force` and
 /// `beads.predicted` undefined.
-void thermostat(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs, const Forces& forces,
+void thermostat(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs, const Forces& forces,
                 const Parameters& parameters);
 
 }  // namespace dmf::engine

@@ -439,6 +439,18 @@ std::string YamlReader::text(const std::string& key, std::optional<std::string> 
   return fallback.value_or("");
 }
 
+std::vector<std::string> YamlReader::texts(const std::string& key, const Count& count) const {
+  const auto* entry = Internals::find(*this, key, true, fmt::format("a list of {} texts", count_text(count)));
+  if (!entry) return {};
+  return Internals::list<std::string>(
+      *this, mapping_->path_of(key), entry->value, count, "texts",
+      [&](const YAML::Node& node, const std::string& path) -> std::optional<std::string> {
+        if (node.IsScalar()) return node.Scalar();
+        Internals::refuse_value(*this, node, path, "text");
+        return std::nullopt;
+      });
+}
+
 std::string YamlReader::choice(const std::string& key, const std::vector<std::string>& words,
                                std::optional<std::string> fallback) const {
   const std::string otherwise = fallback.value_or(words.front());

@@ -81,6 +81,8 @@ class YamlReader {
                                                        const Count& column_count) const;
   bool boolean(const std::string& key, std::optional<bool> fallback = {}) const;
   std::string text(const std::string& key, std::optional<std::string> fallback = {}) const;
+  /// A list of texts, which has to be there.
+  std::vector<std::string> texts(const std::string& key, const Count& count) const;
   /// One of the given words. On a violation the default, or else the first word.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      std::optional<std::string> fallback = {}) const;

@@ -10,7 +10,7 @@
 #include "engine/noise.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 
 namespace dmf::engine {
 
@@ -288,13 +288,14 @@ inline void poison_behind(Beads& beads, BodyBeads& body_beads) {
 }
 
 /// A wall with a gradient, so that every wall bead is its own.
-inline Plates wall_of(const System& system) {
-  Plates wall(system.parameters.domain, system.parameters.wall,
-              system.parameters.liquid.range() + system.parameters.list_skin);
+inline Walls wall_of(const System& system) {
+  Parameters parameters = system.parameters;
+  parameters.wall.top_contact_angle = 75;
+  Walls wall(parameters);
   const double width = system.parameters.domain.size().x();
   wall.set_wettability([width](double x, double) { return 150 - 110 * std::clamp(x / width, 0.0, 1.0); },
                        system.curve);
-  wall.set_top_wettability(75, system.curve);
+  wall.set_fixed_wettability(parameters, system.curve);
   return wall;
 }
 
@@ -322,7 +323,7 @@ struct Sorted {
     poison_behind(system.beads, bodies.beads());
   }
 
-  Plates wall;
+  Walls wall;
   Microparticles bodies;
   Pairs pairs;
   Forces forces;

@@ -37,7 +37,7 @@ Parameters wide_plate(double side, double height) {
 TEST(Memory, KnowsTheBeadsOfEveryWall) {
   for (const Parameters& parameters :
        {plate(14, 12), two_plates(33.3, 5), periodic_box(9), wide_plate(3, 3)}) {
-    const Plates wall(parameters.domain, parameters.wall, 1.25);
+    const Walls wall(parameters);
     EXPECT_EQ(wall_beads(parameters), static_cast<double>(wall.size()));
   }
 }

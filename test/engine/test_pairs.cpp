@@ -74,7 +74,7 @@ TEST(Pairs, RunsHoldEveryWallBeadThatMayComeIntoRange) {
   for (System& system : all_systems()) {
     if (!system.parameters.domain.has_wall()) continue;
     SCOPED_TRACE(system.name);
-    const Plates wall = wall_of(system);
+    const Walls wall = wall_of(system);
     Pairs pairs(system.parameters);
     pairs.rebuild(system.beads, wall);
     const double reach = system.parameters.liquid.range() + 0.5 * system.parameters.list_skin;

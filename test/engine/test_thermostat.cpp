@@ -33,7 +33,7 @@ struct Dense {
   Eigen::VectorXd noise, velocity;
 };
 
-Dense dense(const System& system, const Plates& wall) {
+Dense dense(const System& system, const Walls& wall) {
   const Beads& beads = system.beads;
   const MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step);
   const double dt = system.parameters.time_step;

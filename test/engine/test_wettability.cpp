@@ -6,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include "engine/walls/plates.h"
+#include "engine/walls/walls.h"
 #include "engine/wettability.h"
 #include "systems.h"
 
@@ -54,7 +54,7 @@ TEST(CalibrationFile, IsReadStrictly) {
 
 TEST(Plates, HasTheLiquidsDensityAndItsFirstLayerOnThePlane) {
   const Parameters parameters = plate(20, 10);
-  const Plates wall(parameters.domain, parameters.wall, 1.2);
+  const Walls wall(parameters);
   const double layer_spacing = 0.5 * parameters.wall.lattice_constant;
   EXPECT_NEAR(wall.size() / (20 * 20 * 3 * layer_spacing), 6.0, 0.1);
   double top = -1e9;
@@ -63,11 +63,12 @@ TEST(Plates, HasTheLiquidsDensityAndItsFirstLayerOnThePlane) {
 }
 
 TEST(Plates, TheTopPlateMirrorsTheLowerOneAndHasItsOwnAngle) {
-  const Parameters parameters = two_plates(12, 5);
-  Plates wall(parameters.domain, parameters.wall, 1.2);
+  Parameters parameters = two_plates(12, 5);
+  parameters.wall.top_contact_angle = 60;
+  Walls wall(parameters);
   const ContactAngleCurve curve = ContactAngleCurve::lan2016();
   wall.set_wettability([](double, double) { return 120.0; }, curve);
-  wall.set_top_wettability(60, curve);
+  wall.set_fixed_wettability(parameters, curve);
   std::multiset<std::array<float, 3>> lower, mirrored;
   for (const Record& bead : wall.beads()) {
     if (bead.z <= 0) {
@@ -88,7 +89,7 @@ TEST(Plates, TheTopPlateMirrorsTheLowerOneAndHasItsOwnAngle) {
 
 TEST(Plates, FccNeighboursStandAtOneOverRootTwoOfTheLatticeConstant) {
   const Parameters parameters = plate(10, 10);
-  const Plates wall(parameters.domain, parameters.wall, 1.2);
+  const Walls wall(parameters);
   for (std::size_t i = 0; i < wall.size(); ++i) {
     const Record& a = wall.beads()[i];
     if (std::abs(a.x - 5) > 2 || std::abs(a.y - 5) > 2) continue;

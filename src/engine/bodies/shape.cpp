@@ -95,6 +95,8 @@ std::vector<std::string> violations(const MicroparticlePlacement& placement, con
   check.unless(placement.center.allFinite() && std::isfinite(placement.z.value_or(0)),
                "center: ({}, {}, {}), allowed: finite numbers", placement.center.x(), placement.center.y(),
                placement.z.value_or(0));
+  check.unless(!parameters.label_grid.grid,
+               "microparticle: with a label grid, allowed: without one (its contact knows plates only)");
   check.unless(within(placement.radius, 0.5, 20), "radius: {}, allowed: 0.5 to 20 (r_c)", placement.radius);
   check.unless(placement.points.size() <= largest_bead_count, "points: {}, allowed: up to {}",
                placement.points.size(), largest_bead_count);

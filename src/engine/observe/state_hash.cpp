@@ -32,7 +32,7 @@ std::uint64_t fold(std::uint64_t hash, const Microparticle& particle) {
 
 }  // namespace
 
-std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const Plates& wall,
+std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const Walls& wall,
                          const Microparticles& bodies) {
   // A sum over beads does not know their order.
   std::uint64_t sum = mix64(step + 0x9e3779b97f4a7c15ull);

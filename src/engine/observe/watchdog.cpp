@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "engine/walls/solid.h"
+
 namespace dmf::engine {
 namespace {
 
@@ -18,6 +20,9 @@ std::string name_of(std::uint32_t bead, const DropletTracker& tracker) {
   return fmt::format("bead {} of {}", bead,
                      droplet > 0 ? fmt::format("droplet {}", droplet) : std::string("the vapour"));
 }
+
+/// How deep rounding may put a bead into a solid voxel when it is folded back over a periodic side, r_c.
+constexpr float solid_margin = 1e-3f;
 
 /// The axis along which a point is beyond a side that is closed, or is no number; -1 for none.
 int axis_beyond(const Vector3d& at, const Domain& domain) {
@@ -40,11 +45,13 @@ std::string side_beyond(const Vector3d& at, int axis, const Domain& domain) {
 
 std::string fault_of_beads(const Parameters& parameters, const Beads& beads, const DropletTracker& tracker) {
   double twice_energy = 0;
-  std::size_t beyond = beads.size();
+  std::size_t beyond = beads.size(), in_solid = beads.size();
+  const Solid solid(parameters);
   for (std::size_t i = 0; i < beads.size(); ++i) {
     const Record &p = beads.position[i], &v = beads.velocity[i];
     twice_energy += Vector3d(v.x, v.y, v.z).squaredNorm();
     if (axis_beyond({p.x, p.y, p.z}, parameters.domain) >= 0) beyond = i;
+    if (!solid.empty() && solid.contains_deep({p.x, p.y, p.z}, solid_margin)) in_solid = i;
   }
   if (beyond < beads.size()) {
     const Record& p = beads.position[beyond];
@@ -53,6 +60,11 @@ std::string fault_of_beads(const Parameters& parameters, const Beads& beads, con
                        name_of(beads.id[beyond], tracker), text_of(at),
                        side_beyond(at, axis_beyond(at, parameters.domain), parameters.domain),
                        parameters.time_step);
+  }
+  if (in_solid < beads.size()) {
+    const Record& p = beads.position[in_solid];
+    return fmt::format("{} at {} is in the solid of the label grid; look at time_step ({})",
+                       name_of(beads.id[in_solid], tracker), text_of({p.x, p.y, p.z}), parameters.time_step);
   }
   if (beads.size() < DropletTracker::fewest_beads) return "";
   const double count = static_cast<double>(beads.size());
