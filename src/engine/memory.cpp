@@ -15,6 +15,7 @@ constexpr double of_cell = 4;
 constexpr double of_moving_bead = 230;
 constexpr double of_baoab = 16;  ///< more, of a moving bead
 constexpr double of_body_bead = 240;
+constexpr double of_bonded_bead = 700;  ///< of a membrane; of a chain less
 
 }  // namespace
 
@@ -28,7 +29,8 @@ double wall_beads(const Parameters& parameters) {
   return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1);
 }
 
-MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads) {
+MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads,
+                       double bonded_beads) {
   const double edge = parameters.liquid.cutoff_radius + parameters.list_skin;
   const bool baoab = parameters.integrator == Integrator::baoab;
   MemoryNeed need;
@@ -37,19 +39,22 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
   need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0));
   need.bodies = body_beads * of_body_bead;
+  need.bonds = bonded_beads * of_bonded_bead;
   return need;
 }
 
-std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads) {
-  const double without = memory_need(parameters, 0, body_beads).total();
-  const double of_one = memory_need(parameters, 1, body_beads).total() - without;
+std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads, double bonded_beads) {
+  const double without = memory_need(parameters, 0, body_beads, bonded_beads).total();
+  const double of_one = memory_need(parameters, 1, body_beads, bonded_beads).total() - without;
   const double fit = std::max(0.0, (parameters.max_memory * bytes_per_megabyte - without) / of_one);
   return std::min(parameters.max_beads, static_cast<std::uint64_t>(fit));
 }
 
-void require_memory(const Parameters& parameters, double moving_beads, double body_beads) {
-  const std::uint64_t most = most_moving_beads(parameters, body_beads);
-  const double needed = memory_need(parameters, moving_beads, body_beads).total() / bytes_per_megabyte;
+void require_memory(const Parameters& parameters, double moving_beads, double body_beads,
+                    double bonded_beads) {
+  const std::uint64_t most = most_moving_beads(parameters, body_beads, bonded_beads);
+  const double needed =
+      memory_need(parameters, moving_beads, body_beads, bonded_beads).total() / bytes_per_megabyte;
   if (moving_beads <= static_cast<double>(most) && needed <= parameters.max_memory) return;
   throw InvalidInput(
       fmt::format("{:.0f} moving beads in all and {:.0f} of microparticles take {:.0f} MB, allowed: {} "

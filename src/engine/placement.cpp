@@ -187,6 +187,12 @@ std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, c
 std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
                         std::uint64_t step, std::uint32_t& next_id) {
   require_free(beads, sites, parameters);
+  return add_beads(beads, sites, parameters, step, next_id).size();
+}
+
+std::vector<std::uint32_t> add_beads(Beads& beads, const std::vector<Vector3d>& sites,
+                                     const Parameters& parameters, std::uint64_t step,
+                                     std::uint32_t& next_id) {
   const std::vector<std::uint32_t> ids = take_ids(beads, sites.size(), next_id);
   const StepKey key = step_key(parameters.seed, step, Stream::velocity);
   const double spread = std::sqrt(parameters.liquid.temperature);
@@ -204,7 +210,7 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const 
                           moving = (spread * (velocities[k] - mean)).cast<float>();
     beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, ids[k]);
   }
-  return sites.size();
+  return ids;
 }
 
 }  // namespace dmf::engine

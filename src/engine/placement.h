@@ -25,4 +25,9 @@ std::vector<Vector3d> slab_sites(const Vector3d& lower, const Vector3d& upper, c
 std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, const Parameters& parameters,
                         std::uint64_t step, std::uint32_t& next_id);
 
+/// The same wherever other beads are. @returns the ids, site by site.
+std::vector<std::uint32_t> add_beads(Beads& beads, const std::vector<Vector3d>& sites,
+                                     const Parameters& parameters, std::uint64_t step,
+                                     std::uint32_t& next_id);
+
 }  // namespace dmf::engine

@@ -10,6 +10,8 @@
 #include "engine/archive.h"
 #include "engine/beads.h"
 #include "engine/bodies/microparticles.h"
+#include "engine/bonds/bonded_placement.h"
+#include "engine/bonds/bonds.h"
 #include "engine/forces.h"
 #include "engine/integrate.h"
 #include "engine/memory.h"
@@ -45,6 +47,7 @@ struct Simulation::State {
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
         wall(parameters.domain, parameters.wall, parameters.liquid.range() + parameters.list_skin),
         microparticles(parameters),
+        bonds(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),
         tracker(parameters) {}
@@ -55,6 +58,7 @@ struct Simulation::State {
   Plates wall;
   Beads beads;
   Microparticles microparticles;
+  Bonds bonds;
   Pairs pairs;
   Forces forces;
   DropletTracker tracker;
@@ -126,12 +130,19 @@ struct Simulation::State {
   void find_pairs() {
     try {
       pairs.rebuild(beads, wall);
+      if (!bonds.empty()) bonds.find(beads);
       if (microparticles.empty()) return pairs.forget_bodies();
       microparticles.note_listed();
       pairs.find_bodies(microparticles, beads, wall);
     } catch (const std::length_error& crowd) {
       stop(fmt::format("{}: the liquid has collapsed; look at its attraction and repulsion", crowd.what()));
     }
+  }
+
+  void add_bond_forces() {
+    if (bonds.empty()) return;
+    const std::string broken = bonds.add_forces(beads);
+    if (!broken.empty()) stop(broken);
   }
 
   void look() {
@@ -173,7 +184,8 @@ struct Simulation::State {
 
   void archive(Archive& archive) {
     // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is.
-    constexpr std::uint64_t current = 4;
+    // 4: no bonds.
+    constexpr std::uint64_t current = 5;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
     if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));
@@ -197,6 +209,7 @@ struct Simulation::State {
     archive(far.gravity);
     archive(far.magnetic);
     require_sound(far);
+    bonds.archive(archive);
   }
 };
 
@@ -221,6 +234,7 @@ void Simulation::step() {
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
+    s.add_bond_forces();
     finish(s.beads, s.parameters);
     s.microparticles.finish(s.far);
   } else {
@@ -230,6 +244,7 @@ void Simulation::step() {
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
+    s.add_bond_forces();
   }
   ++s.step;
 
@@ -259,7 +274,8 @@ std::size_t Simulation::add_droplet(const DropletPlacement& placement) {
 std::size_t Simulation::place(const std::vector<Vector3d>& sites) {
   State& s = *state_;
   require_memory(s.parameters, static_cast<double>(s.beads.size() + sites.size()),
-                 static_cast<double>(s.microparticles.beads().size()));
+                 static_cast<double>(s.microparticles.beads().size()),
+                 static_cast<double>(s.bonds.bead_count()));
   s.microparticles.require_clear(sites);
   const std::size_t placed = place_beads(s.beads, sites, s.parameters, s.step, s.next_bead_id);
   refresh();
@@ -274,18 +290,67 @@ std::size_t Simulation::fill_slab(const Vector3d& lower, const Vector3d& upper) 
   return place(slab_sites(lower, upper, state_->parameters));
 }
 
+namespace {
+void require_sound(const std::vector<std::string>& wrong) {
+  if (!wrong.empty()) throw InvalidInput(fmt::format("{}", fmt::join(wrong, "\n")));
+}
+}  // namespace
+
+std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) {
+  State& s = *state_;
+  const auto more = static_cast<double>(sites.size());
+  require_memory(s.parameters, static_cast<double>(s.beads.size()) + more,
+                 static_cast<double>(s.microparticles.beads().size()),
+                 static_cast<double>(s.bonds.bead_count()) + more);
+  s.microparticles.require_clear(sites);
+  return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
+}
+
+std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
+  State& s = *state_;
+  require_sound(violations(placement, s.parameters));
+  const std::uint32_t first = s.bonds.next_chain();
+  const std::vector<std::vector<Vector3d>> chains = chain_sites(placement, s.parameters, s.step, first);
+  std::vector<Vector3d> sites;
+  for (const std::vector<Vector3d>& chain : chains) sites.insert(sites.end(), chain.begin(), chain.end());
+  const std::vector<std::uint32_t> ids = take(sites);
+  auto next = ids.begin();
+  for (const std::vector<Vector3d>& chain : chains) {
+    const auto end = next + static_cast<std::ptrdiff_t>(chain.size());
+    s.bonds.bind_chain(placement.spring, placement.stretching_force, {next, end});
+    next = end;
+  }
+  refresh();
+  return first;
+}
+
+std::uint32_t Simulation::add_membrane(const MembranePlacement& placement) {
+  State& s = *state_;
+  require_sound(violations(placement, s.parameters));
+  const std::uint32_t id = s.bonds.bind_membrane(placement, take(placement.mesh->vertices));
+  refresh();
+  return id;
+}
+
 void Simulation::remove_droplet(std::uint32_t id) {
   State& s = *state_;
-  std::vector<std::uint32_t> kept;
-  for (std::uint32_t i = 0; i < s.beads.size(); ++i)
-    if (id == 0 || s.tracker.droplet_of(s.beads.id[i]) != id) kept.push_back(i);
-  if (kept.size() == s.beads.size()) {
+  std::vector<bool> gone(s.next_bead_id, false);
+  bool there = false;
+  for (const std::uint32_t bead : s.beads.id) {
+    gone[bead] = id != 0 && s.tracker.droplet_of(bead) == id;
+    there = there || gone[bead];
+  }
+  if (!there) {
     std::vector<std::uint32_t> known;
     for (const DropletObservation& droplet : s.tracker.droplets()) known.push_back(droplet.id);
     throw InvalidInput(
         fmt::format("droplet {} does not exist; droplets are [{}]", id, fmt::join(known, ", ")));
   }
   s.tracker.forget(id);
+  s.bonds.remove_with(gone);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < s.beads.size(); ++i)
+    if (!gone[s.beads.id[i]]) kept.push_back(i);
   s.beads.reorder(kept);
   refresh();
 }
@@ -303,12 +368,14 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   snapshot->droplets = s.tracker.droplets();
   for (const Microparticle& particle : s.microparticles.all())
     snapshot->microparticles.push_back(s.observed(particle));
+  snapshot->chains = s.bonds.observe_chains(s.beads);
+  snapshot->membranes = s.bonds.observe_membranes(s.beads);
   Virial virial;
   if (request.virial) {
     virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
     snapshot->virial = virial.total;
   }
-  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
+  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles, s.bonds);
   if (request.wetted && s.parameters.domain.has_wall())
     snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);
   if (request.beads) {
@@ -331,7 +398,8 @@ std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placem
   State& s = *state_;
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
-                 static_cast<double>(s.microparticles.beads().size() + told));
+                 static_cast<double>(s.microparticles.beads().size() + told),
+                 static_cast<double>(s.bonds.bead_count()));
   std::vector<Vector3d> liquid;
   for (const Record& bead : s.beads.position) liquid.emplace_back(bead.x, bead.y, bead.z);
   const double force = placement.magnetic ? s.far.magnetic.norm() : 0.0;
@@ -371,10 +439,12 @@ void Simulation::load_state(const std::string& bytes) {
   loaded->archive(archive);
   if (!archive.at_end()) throw InvalidInput("saved state: longer than it should be");
   require_sound(loaded->beads, loaded->next_bead_id, loaded->tracker, s.parameters);
+  loaded->bonds.require_sound(loaded->beads);
   omp_set_num_threads(s.threads);
   try {
     loaded->pairs.restore(loaded->beads, loaded->wall);
     loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
+    loaded->bonds.find(loaded->beads);
   } catch (const std::length_error& crowd) {
     throw InvalidInput(fmt::format("saved state: {}", crowd.what()));
   }
