@@ -18,6 +18,7 @@ constexpr double of_moving_bead = 230;
 constexpr double of_baoab = 16;   ///< more, of a moving bead
 constexpr double of_species = 2;  ///< more, of a moving bead of a mixture
 constexpr double of_body_bead = 240;
+constexpr double of_bonded_bead = 700;  ///< of a membrane; of a chain less
 
 }  // namespace
 
@@ -32,7 +33,8 @@ double wall_beads(const Parameters& parameters) {
          static_cast<double>(count_solid_beads(parameters));
 }
 
-MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads) {
+MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads,
+                       double bonded_beads) {
   const double edge = parameters.liquid.cutoff_radius + parameters.list_skin;
   const bool baoab = parameters.integrator == Integrator::baoab;
   MemoryNeed need;
@@ -46,19 +48,22 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0) +
                                 (parameters.mixture.liquids.empty() ? 0 : of_species));
   need.bodies = body_beads * of_body_bead;
+  need.bonds = bonded_beads * of_bonded_bead;
   return need;
 }
 
-std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads) {
-  const double without = memory_need(parameters, 0, body_beads).total();
-  const double of_one = memory_need(parameters, 1, body_beads).total() - without;
+std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads, double bonded_beads) {
+  const double without = memory_need(parameters, 0, body_beads, bonded_beads).total();
+  const double of_one = memory_need(parameters, 1, body_beads, bonded_beads).total() - without;
   const double fit = std::max(0.0, (parameters.max_memory * bytes_per_megabyte - without) / of_one);
   return std::min(parameters.max_beads, static_cast<std::uint64_t>(fit));
 }
 
-void require_memory(const Parameters& parameters, double moving_beads, double body_beads) {
-  const std::uint64_t most = most_moving_beads(parameters, body_beads);
-  const double needed = memory_need(parameters, moving_beads, body_beads).total() / bytes_per_megabyte;
+void require_memory(const Parameters& parameters, double moving_beads, double body_beads,
+                    double bonded_beads) {
+  const std::uint64_t most = most_moving_beads(parameters, body_beads, bonded_beads);
+  const double needed =
+      memory_need(parameters, moving_beads, body_beads, bonded_beads).total() / bytes_per_megabyte;
   if (moving_beads <= static_cast<double>(most) && needed <= parameters.max_memory) return;
   throw InvalidInput(
       fmt::format("{:.0f} moving beads in all and {:.0f} of microparticles take {:.0f} MB, allowed: {} "

@@ -15,21 +15,25 @@ struct MemoryNeed {
   double cells = 0;    ///< of the sorting grid, once vapour is everywhere
   double liquid = 0;   ///< moving beads with all that goes with them
   double bodies = 0;   ///< beads of microparticles
+  double bonds = 0;    ///< of chains and membranes
 
-  double total() const { return program + wall + cells + liquid + bodies; }
+  double total() const { return program + wall + cells + liquid + bodies + bonds; }
 };
-MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads);
+/// @param bonded_beads  those of the moving beads that belong to chains and membranes.
+MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double body_beads,
+                       double bonded_beads = 0);
 
 /// Frozen beads of all plates.
 double wall_beads(const Parameters& parameters);
 
 /// The moving beads that max_beads and max_memory allow in all.
 /// @param body_beads  of microparticles, that are there too.
-std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads);
+std::uint64_t most_moving_beads(const Parameters& parameters, double body_beads, double bonded_beads = 0);
 
 /// @throws InvalidInput when a run with so many beads in all would take more than max_beads or max_memory,
 /// with the number of moving beads that would fit.
-void require_memory(const Parameters& parameters, double moving_beads, double body_beads);
+void require_memory(const Parameters& parameters, double moving_beads, double body_beads,
+                    double bonded_beads = 0);
 
 /// Size of the largest domain of the same shape whose walls and cells max_memory allows, r_c.
 Vector3d largest_domain(const Parameters& parameters);

@@ -254,8 +254,9 @@ std::vector<Vector3d> free_sites(const FillPlacement& placement, const Beads& be
   return sites;
 }
 
-std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, std::uint32_t species,
-                        const Parameters& parameters, std::uint64_t step, std::uint32_t& next_id) {
+std::vector<std::uint32_t> place_beads(Beads& beads, const std::vector<Vector3d>& sites,
+                                       std::uint32_t species, const Parameters& parameters,
+                                       std::uint64_t step, std::uint32_t& next_id) {
   const std::vector<std::uint32_t> ids = take_ids(beads, sites.size(), next_id);
   const StepKey key = step_key(parameters.seed, step, Stream::velocity);
   const double spread = std::sqrt(parameters.liquid.temperature);
@@ -274,7 +275,7 @@ std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, std::u
     beads.add({at.x(), at.y(), at.z(), 0}, {moving.x(), moving.y(), moving.z(), 0}, ids[k],
               static_cast<std::uint8_t>(species));
   }
-  return sites.size();
+  return ids;
 }
 
 }  // namespace dmf::engine

@@ -30,8 +30,9 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
 /// Puts a bead on every site, with thermal velocities of no net momentum that depend on (seed, step, bead id)
 /// only. Ids of beads that were taken out are given anew.
 /// @param next_id  above all ids that were ever given; advanced.
-/// @returns the number of beads placed.
-std::size_t place_beads(Beads& beads, const std::vector<Vector3d>& sites, std::uint32_t species,
-                        const Parameters& parameters, std::uint64_t step, std::uint32_t& next_id);
+/// @returns the ids, site by site.
+std::vector<std::uint32_t> place_beads(Beads& beads, const std::vector<Vector3d>& sites,
+                                       std::uint32_t species, const Parameters& parameters,
+                                       std::uint64_t step, std::uint32_t& next_id);
 
 }  // namespace dmf::engine

@@ -10,6 +10,8 @@
 #include "engine/archive.h"
 #include "engine/beads.h"
 #include "engine/bodies/microparticles.h"
+#include "engine/bonds/bonded_placement.h"
+#include "engine/bonds/bonds.h"
 #include "engine/forces.h"
 #include "engine/integrate.h"
 #include "engine/memory.h"
@@ -45,6 +47,7 @@ struct Simulation::State {
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
         wall(parameters),
         microparticles(parameters),
+        bonds(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),
         tracker(parameters) {}
@@ -55,6 +58,7 @@ struct Simulation::State {
   Walls wall;
   Beads beads;
   Microparticles microparticles;
+  Bonds bonds;
   Pairs pairs;
   Forces forces;
   DropletTracker tracker;
@@ -89,9 +93,11 @@ struct Simulation::State {
   }
 
   /// For liquid at these places. @throws InvalidInput.
-  void require_room(const std::vector<Vector3d>& sites) const {
+  /// @param bound  how many of them will be bound to others.
+  void require_room(const std::vector<Vector3d>& sites, std::size_t bound = 0) const {
     require_memory(parameters, static_cast<double>(beads.size() + sites.size()),
-                   static_cast<double>(microparticles.beads().size()));
+                   static_cast<double>(microparticles.beads().size()),
+                   static_cast<double>(bonds.bead_count() + bound));
     microparticles.require_clear(sites);
   }
 
@@ -133,12 +139,19 @@ struct Simulation::State {
   void find_pairs() {
     try {
       pairs.rebuild(beads, wall);
+      if (!bonds.empty()) bonds.find(beads);
       if (microparticles.empty()) return pairs.forget_bodies();
       microparticles.note_listed();
       pairs.find_bodies(microparticles, beads, wall);
     } catch (const std::length_error& crowd) {
       stop(fmt::format("{}: the liquid has collapsed; look at its attraction and repulsion", crowd.what()));
     }
+  }
+
+  void add_bond_forces() {
+    if (bonds.empty()) return;
+    const std::string broken = bonds.add_forces(beads);
+    if (!broken.empty()) stop(broken);
   }
 
   void look() {
@@ -180,7 +193,7 @@ struct Simulation::State {
 
   void archive(Archive& archive) {
     // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is. 4: one
-    // liquid.
+    // liquid, no bonds.
     constexpr std::uint64_t current = 5;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
@@ -206,6 +219,7 @@ struct Simulation::State {
     archive(far.gravity);
     archive(far.magnetic);
     require_sound(far);
+    bonds.archive(archive);
   }
 };
 
@@ -235,6 +249,7 @@ void Simulation::step() {
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
+    s.add_bond_forces();
     finish(s.beads, s.parameters);
     s.microparticles.finish(s.far);
   } else {
@@ -244,6 +259,7 @@ void Simulation::step() {
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
+    s.add_bond_forces();
   }
   ++s.step;
 
@@ -282,7 +298,8 @@ std::size_t Simulation::fill(const FillPlacement& placement) {
 
 std::size_t Simulation::place(const std::vector<Vector3d>& sites, std::uint32_t species) {
   State& s = *state_;
-  const std::size_t placed = place_beads(s.beads, sites, species, s.parameters, s.step, s.next_bead_id);
+  const std::size_t placed =
+      place_beads(s.beads, sites, species, s.parameters, s.step, s.next_bead_id).size();
   refresh();
   return placed;
 }
@@ -298,18 +315,63 @@ std::size_t Simulation::fill_slab(const Vector3d& lower, const Vector3d& upper) 
   return place(sites, 0);
 }
 
+namespace {
+void require_sound(const std::vector<std::string>& wrong) {
+  if (!wrong.empty()) throw InvalidInput(fmt::format("{}", fmt::join(wrong, "\n")));
+}
+}  // namespace
+
+std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) {
+  State& s = *state_;
+  s.require_room(sites, sites.size());
+  return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
+}
+
+std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
+  State& s = *state_;
+  require_sound(violations(placement, s.parameters));
+  const std::uint32_t first = s.bonds.next_chain();
+  const std::vector<std::vector<Vector3d>> chains = chain_sites(placement, s.parameters, s.step, first);
+  std::vector<Vector3d> sites;
+  for (const std::vector<Vector3d>& chain : chains) sites.insert(sites.end(), chain.begin(), chain.end());
+  const std::vector<std::uint32_t> ids = take(sites);
+  auto next = ids.begin();
+  for (const std::vector<Vector3d>& chain : chains) {
+    const auto end = next + static_cast<std::ptrdiff_t>(chain.size());
+    s.bonds.bind_chain(placement.spring, placement.stretching_force, {next, end});
+    next = end;
+  }
+  refresh();
+  return first;
+}
+
+std::uint32_t Simulation::add_membrane(const MembranePlacement& placement) {
+  State& s = *state_;
+  require_sound(violations(placement, s.parameters));
+  const std::uint32_t id = s.bonds.bind_membrane(placement, take(placement.mesh->vertices));
+  refresh();
+  return id;
+}
+
 void Simulation::remove_droplet(std::uint32_t id) {
   State& s = *state_;
-  std::vector<std::uint32_t> kept;
-  for (std::uint32_t i = 0; i < s.beads.size(); ++i)
-    if (id == 0 || s.tracker.droplet_of(s.beads.id[i]) != id) kept.push_back(i);
-  if (kept.size() == s.beads.size()) {
+  std::vector<bool> gone(s.next_bead_id, false);
+  bool there = false;
+  for (const std::uint32_t bead : s.beads.id) {
+    gone[bead] = id != 0 && s.tracker.droplet_of(bead) == id;
+    there = there || gone[bead];
+  }
+  if (!there) {
     std::vector<std::uint32_t> known;
     for (const DropletObservation& droplet : s.tracker.droplets()) known.push_back(droplet.id);
     throw InvalidInput(
         fmt::format("droplet {} does not exist; droplets are [{}]", id, fmt::join(known, ", ")));
   }
   s.tracker.forget(id);
+  s.bonds.remove_with(gone);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < s.beads.size(); ++i)
+    if (!gone[s.beads.id[i]]) kept.push_back(i);
   s.beads.reorder(kept);
   refresh();
 }
@@ -327,6 +389,8 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   snapshot->droplets = s.tracker.droplets();
   for (const Microparticle& particle : s.microparticles.all())
     snapshot->microparticles.push_back(s.observed(particle));
+  snapshot->chains = s.bonds.observe_chains(s.beads);
+  snapshot->membranes = s.bonds.observe_membranes(s.beads);
   Virial virial;
   if (request.virial) {
     virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
@@ -334,7 +398,7 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   }
   if (request.stress)
     snapshot->stress = stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.parameters);
-  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
+  if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles, s.bonds);
   if (request.wetted && s.parameters.domain.has_wall())
     snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);
   if (request.beads) {
@@ -358,7 +422,8 @@ std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placem
   State& s = *state_;
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
-                 static_cast<double>(s.microparticles.beads().size() + told));
+                 static_cast<double>(s.microparticles.beads().size() + told),
+                 static_cast<double>(s.bonds.bead_count()));
   std::vector<Vector3d> liquid;
   for (const Record& bead : s.beads.position) liquid.emplace_back(bead.x, bead.y, bead.z);
   const double force = placement.magnetic ? s.far.magnetic.norm() : 0.0;
@@ -398,10 +463,12 @@ void Simulation::load_state(const std::string& bytes) {
   loaded->archive(archive);
   if (!archive.at_end()) throw InvalidInput("saved state: longer than it should be");
   require_sound(loaded->beads, loaded->next_bead_id, loaded->tracker, s.parameters);
+  loaded->bonds.require_sound(loaded->beads);
   omp_set_num_threads(s.threads);
   try {
     loaded->pairs.restore(loaded->beads, loaded->wall);
     loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
+    loaded->bonds.find(loaded->beads);
   } catch (const std::length_error& crowd) {
     throw InvalidInput(fmt::format("saved state: {}", crowd.what()));
   }

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/chain.h"
 #include "engine/droplet.h"
+#include "engine/membrane.h"
 #include "engine/microparticle.h"
 #include "engine/observe/snapshot.h"
 #include "engine/parameters.h"
@@ -67,7 +69,17 @@ class Simulation {
   /// Fills a slab lower <= position < upper with liquid (film studies). @throws InvalidInput as add_droplet.
   std::size_t fill_slab(const Vector3d& lower, const Vector3d& upper);
 
-  /// Takes a droplet's beads out. @throws InvalidInput when no such droplet is tracked.
+  /// Places chains of beads, in liquid or elsewhere. @returns the id of the first; the others count on.
+  /// @throws InvalidInput, unchanged, when a number is out of range or the spring too stiff for time_step
+  /// (violations() in chain.h), a chain finds no room in the box, a bead would be in a microparticle, or it
+  /// would exceed max_beads.
+  std::uint32_t add_chains(const ChainPlacement& placement);
+
+  /// Places a membrane. @returns its id. @throws InvalidInput, unchanged, as add_chains.
+  std::uint32_t add_membrane(const MembranePlacement& placement);
+
+  /// Takes a droplet's beads out, and every chain and membrane that has a bead in it. @throws InvalidInput
+  /// when no such droplet is tracked.
   void remove_droplet(std::uint32_t id);
 
   /// Places a microparticle at rest. @returns its id.
@@ -108,6 +120,7 @@ class Simulation {
 
  private:
   std::size_t place(const std::vector<Vector3d>& sites, std::uint32_t species);
+  std::vector<std::uint32_t> take(const std::vector<Vector3d>& sites);
   void refresh();
 
   struct State;

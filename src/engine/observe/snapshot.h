@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/chain.h"
+#include "engine/membrane.h"
 #include "engine/microparticle.h"
 #include "engine/observe/stress_profile.h"
 #include "engine/observe/wetted_area.h"
@@ -62,6 +64,8 @@ struct Snapshot {
   std::size_t vapour_beads = 0;                          ///< moving beads that belong to no droplet
   std::vector<DropletObservation> droplets;              ///< by id
   std::vector<MicroparticleObservation> microparticles;  ///< by id
+  std::vector<ChainObservation> chains;                  ///< by id
+  std::vector<MembraneObservation> membranes;            ///< by id
   std::optional<std::uint64_t> state_hash;               ///< when asked for
   std::optional<Eigen::Matrix3d> virial;  ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
   std::optional<WettedArea> wetted;       ///< of the plate, when asked for and there is one

@@ -33,7 +33,7 @@ std::uint64_t fold(std::uint64_t hash, const Microparticle& particle) {
 }  // namespace
 
 std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const Walls& wall,
-                         const Microparticles& bodies) {
+                         const Microparticles& bodies, const Bonds& bonds) {
   // A sum over beads does not know their order.
   std::uint64_t sum = mix64(step + 0x9e3779b97f4a7c15ull);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
@@ -50,6 +50,7 @@ std::uint64_t state_hash(std::uint64_t step, const Beads& beads, const Walls& wa
   std::uint64_t hash = mix64(sum);
   for (const Record& bead : wall.beads()) hash = fold(hash, bead.w, 0.f);
   for (const Microparticle& particle : bodies.all()) hash = fold(hash, particle);
+  if (!bonds.empty()) hash = mix64(hash ^ bonds.hash());
   return hash;
 }
 
