@@ -11,7 +11,7 @@ namespace dmf::engine {
 namespace {
 
 std::vector<SlabStress> profile_of(System& system, const StressSlabs& slabs) {
-  const Plates wall(system.parameters.domain, system.parameters.wall, 1.25);
+  const Walls wall(system.parameters);
   Pairs pairs(system.parameters);
   pairs.rebuild(system.beads, wall);
   Microparticles none(system.parameters);
