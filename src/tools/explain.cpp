@@ -154,7 +154,6 @@ std::optional<double> pitch_of(const chip::Scene& scene) {
 
 std::string explain(const chip::Scene& scene) {
   const engine::Parameters& parameters = scene.parameters;
-  const engine::LiquidParameters& liquid = parameters.liquid;
   const engine::Units& units = scene.units;
   const engine::Vector3d size = parameters.domain.size();
 

@@ -30,8 +30,11 @@ double flory_huggins_share(double chi) {
   return share;
 }
 
+/// In a box of about 10 x 10 x 20 whole lattice cells: the density is what it says.
 InterfaceRun plain_dpd(double density, double repulsion, double excess) {
   InterfaceRun how;
+  const double cell = std::cbrt(4 / density);
+  how.size = cell * Eigen::Vector3d(9, 9, 18);
   how.liquid.attraction = repulsion;
   how.liquid.repulsion = 0;
   how.liquid.random_amplitude = 3;
@@ -60,9 +63,9 @@ std::vector<Case> cases(bool quick) {
                  0.5 * (fitted_tension(3, chi_at_3 * excess) + fitted_tension(5, chi_at_5 * excess)), 5.25});
   // Water and oil of the scene oil_around_droplet. No theory is known of the many-body law.
   InterfaceRun many_body;
-  many_body.attraction_between = -20;
+  many_body.attraction_between = -30;
   many_body.liquid.initial_density = many_body.liquid.bulk_density;
-  all.push_back({"many-body A=-20", many_body, std::nullopt, std::nullopt, std::nullopt});
+  all.push_back({"many-body A=-30", many_body, std::nullopt, std::nullopt, std::nullopt});
   if (quick)
     for (Case& one : all) {
       one.how.size = {8, 8, 12};
