@@ -210,7 +210,9 @@ std::vector<Vector3d> slab_sites(const FillPlacement& placement, const Parameter
   const double a = fcc_constant(initial_density(parameters, placement.species));
   // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
   const Vector3d size = upper - lower;
-  const Vector3d cells = (size / a).array().round().max(1.0);
+  Vector3d cells = (size / a).array().round().max(1.0);
+  // What rounding in x and y has taken off or put on too much, the layers in z make good.
+  cells.z() = std::max(1.0, std::round(size.prod() / (a * a * a) / (cells.x() * cells.y())));
   std::vector<Vector3d> sites;
   const Solid solid(parameters);
   for_each_site(lower, upper, size.cwiseQuotient(cells), [&](const Vector3d& site) {
@@ -244,6 +246,7 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
 
 std::vector<Vector3d> free_sites(const FillPlacement& placement, const Beads& beads,
                                  const Microparticles& bodies, const Parameters& parameters) {
+  require_species(placement.species, parameters);
   // Nearer than half a lattice constant, less than the next layer of a slab that begins here.
   const double distance = 0.49 * fcc_constant(initial_density(parameters, placement.species));
   std::vector<Vector3d> sites;

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       {"liquid", study_liquid},
       {"dpd_liquid", study_dpd_liquid},
       {"equation_of_state", study_equation_of_state},
+      {"interfacial_tension", study_interfacial_tension},
       {"crossing", study_crossing},
       {"time_step", study_time_step},
       {"protocols", study_protocols},
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
       "  liquid           temperature, density, surface tension, viscosity\n"
       "  dpd_liquid       plain DPD: viscosity, diffusivity, Schmidt number against kinetic theory\n"
       "  equation_of_state  pressure against density, with a van der Waals fit\n"
+      "  interfacial_tension  two liquids that don't mix, against Chen's value and Groot and Warren's fit\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"

@@ -154,7 +154,6 @@ std::optional<double> pitch_of(const chip::Scene& scene) {
 
 std::string explain(const chip::Scene& scene) {
   const engine::Parameters& parameters = scene.parameters;
-  const engine::LiquidParameters& liquid = parameters.liquid;
   const engine::Units& units = scene.units;
   const engine::Vector3d size = parameters.domain.size();
 
@@ -175,7 +174,7 @@ std::string explain(const chip::Scene& scene) {
   if (const auto& others = parameters.mixture.liquids; !others.empty()) {
     text += "species      liquid";
     for (const auto& other : others) text += ", " + other.name;
-    text += fmt::format("; {} boxes filled\n", scene.fills.size());
+    text += fmt::format("; boxes filled: {}\n", scene.fills.size());
   }
   for (const std::string& notice : engine::notices(parameters)) text += "note         " + notice + "\n";
   text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n",

@@ -95,6 +95,8 @@ void study_liquid(const StudyOptions& options);  ///< temperature, density, surf
 void study_dpd_liquid(const StudyOptions& options);  ///< plain DPD against kinetic theory (Liu table 1)
 void study_equation_of_state(
     const StudyOptions& options);  ///< pressure against density, with a van der Waals fit (Liu 3.3.2)
+/// Two liquids that don't mix: tension against Chen's value and Groot and Warren's fit.
+void study_interfacial_tension(const StudyOptions& options);
 void study_crossing(
     const StudyOptions& options);  ///< a droplet on a wettability gradient: time against Lan's
 void study_time_step(
