@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
       {"inner_flow", study_inner_flow},
       {"plates", study_plates},
       {"splitting", study_splitting},
+      {"square_channel", study_square_channel},
       {"transport_velocity", study_transport_velocity}};
   std::string transport_titles;
   for (const StudyTitle& study : transport_studies()) {
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"
       "  splitting        between two plates: up to which gap over pitch a droplet splits\n"
+      "  square_channel   plain DPD along a square channel against the series, mass flow against Chen's\n"
       "  transport_velocity  how fast a droplet moves along electrodes under what voltage\n"
       "  protocols        success rate of the controller's protocols, with faults too\n"
       "Microparticles:\n"

@@ -124,6 +124,7 @@ void study_forces(const StudyOptions& options);
 void study_inner_flow(const StudyOptions& options);
 void study_plates(const StudyOptions& options);
 void study_splitting(const StudyOptions& options);
+void study_square_channel(const StudyOptions& options);  ///< plain DPD along a duct (Chen 3.1)
 void study_transport_velocity(const StudyOptions& options);
 
 }  // namespace dmf::tools
