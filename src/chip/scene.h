@@ -65,6 +65,8 @@ struct Scene {
   std::vector<engine::DropletPlacement> droplets;
   std::string microparticle_calibration;                       ///< of their contact angles: a name or a path
   std::vector<engine::MicroparticlePlacement> microparticles;  ///< placed after the droplets
+  std::vector<engine::ChainPlacement> chains;                  ///< placed after them
+  std::vector<engine::MembranePlacement> membranes;            ///< placed after the chains
   engine::BodyForces body_forces;                              ///< that act from the start
   std::vector<ScheduledCommand> schedule;                      ///< by rising time
   std::map<std::string, std::vector<ScheduledCommand>> patterns;  ///< for ~load_pattern, by rising time

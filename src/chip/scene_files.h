@@ -12,12 +12,14 @@ struct SceneFile {
   std::string text;
 };
 
-/// A scene has at most one file of each.
+/// A scene has at most one file of each, but for meshes: their role has the name that the scene gives after
+/// it.
 namespace file_role {
 constexpr const char* kScene = "scene";
 constexpr const char* kBoard = "board";
 constexpr const char* kCalibration = "calibration";
 constexpr const char* kMicroparticleCalibration = "microparticle_calibration";
+constexpr const char* kMesh = "mesh";
 }  // namespace file_role
 
 /// All the texts that make up a scene, so that it can be built again from them alone: where the files were

@@ -139,6 +139,13 @@ struct Simulation::State {
     }
   }
 
+  /// Told before their places are worked out.
+  void require_room_for_bonded(double more) const {
+    require_memory(parameters, static_cast<double>(beads.size()) + more,
+                   static_cast<double>(microparticles.beads().size()),
+                   static_cast<double>(bonds.bead_count()) + more);
+  }
+
   void add_bond_forces() {
     if (bonds.empty()) return;
     const std::string broken = bonds.add_forces(beads);
@@ -298,10 +305,7 @@ void require_sound(const std::vector<std::string>& wrong) {
 
 std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) {
   State& s = *state_;
-  const auto more = static_cast<double>(sites.size());
-  require_memory(s.parameters, static_cast<double>(s.beads.size()) + more,
-                 static_cast<double>(s.microparticles.beads().size()),
-                 static_cast<double>(s.bonds.bead_count()) + more);
+  s.require_room_for_bonded(static_cast<double>(sites.size()));
   s.microparticles.require_clear(sites);
   return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
 }
@@ -309,6 +313,7 @@ std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) 
 std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
+  s.require_room_for_bonded(placement.points.empty() ? 1.0 * placement.count * placement.beads : 0.0);
   const std::uint32_t first = s.bonds.next_chain();
   const std::vector<std::vector<Vector3d>> chains = chain_sites(placement, s.parameters, s.step, first);
   std::vector<Vector3d> sites;
