@@ -53,6 +53,10 @@ void Run::place() {
   for (std::size_t i = 0; i < scene->fills.size(); ++i) {
     attempt(fmt::format("fills[{}]", i), [&] { simulation->fill(scene->fills[i]); });
   }
+  for (std::size_t i = 0; i < scene->chains.size(); ++i)
+    attempt(fmt::format("chains[{}]", i), [&] { simulation->add_chains(scene->chains[i]); });
+  for (std::size_t i = 0; i < scene->membranes.size(); ++i)
+    attempt(fmt::format("membranes[{}]", i), [&] { simulation->add_membrane(scene->membranes[i]); });
   const engine::BodyForces& forces = scene->body_forces;
   if (!forces.gravity.isZero(0) || !forces.magnetic.isZero(0))
     attempt("body_forces", [&] { simulation->set_body_forces(forces); });

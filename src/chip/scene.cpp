@@ -113,6 +113,8 @@ Scene read_scene(SceneFiles files) {
   read_droplets(root, scene);
   read_microparticles(root, scene);
   read_fills(root, scene);
+  read_chains(root, scene);
+  read_membranes(root, scene);
   read_body_forces(root, scene);
 
   // Commands may name channels, angles, patterns and places: read them all, then look at each.

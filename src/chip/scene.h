@@ -63,11 +63,13 @@ struct Scene {
   double default_duration = 0;  ///< tau that dmf_run simulates when not told otherwise, settling included
   double settle_time = 0;       ///< tau at rest before the scene's clock of commands starts
   std::vector<engine::DropletPlacement> droplets;
-  std::vector<engine::FillPlacement> fills;                    ///< placed last, around all others
-  std::string microparticle_calibration;                       ///< of their contact angles: a name or a path
+  std::vector<engine::FillPlacement> fills;  ///< placed after droplets and microparticles, around them
+  std::string microparticle_calibration;     ///< of their contact angles: a name or a path
   std::vector<engine::MicroparticlePlacement> microparticles;  ///< placed after the droplets
-  engine::BodyForces body_forces;                              ///< that act from the start
-  std::vector<ScheduledCommand> schedule;                      ///< by rising time
+  std::vector<engine::ChainPlacement> chains;        ///< placed after all liquid, whose beads they take
+  std::vector<engine::MembranePlacement> membranes;  ///< placed after the chains
+  engine::BodyForces body_forces;                    ///< that act from the start
+  std::vector<ScheduledCommand> schedule;            ///< by rising time
   std::map<std::string, std::vector<ScheduledCommand>> patterns;  ///< for ~load_pattern, by rising time
 };
 

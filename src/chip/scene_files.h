@@ -12,7 +12,8 @@ struct SceneFile {
   std::string text;
 };
 
-/// A scene has at most one file of each.
+/// A scene has at most one file of each, but for meshes: their role has the name that the scene gives after
+/// it.
 namespace file_role {
 constexpr const char* kScene = "scene";
 constexpr const char* kBoard = "board";
@@ -20,6 +21,7 @@ constexpr const char* kCalibration = "calibration";
 constexpr const char* kMicroparticleCalibration = "microparticle_calibration";
 /// A raw file; pictures are label_grid_0 and so on.
 constexpr const char* kLabelGrid = "label_grid";
+constexpr const char* kMesh = "mesh";
 }  // namespace file_role
 
 /// All the texts that make up a scene, so that it can be built again from them alone: where the files were

@@ -78,6 +78,25 @@ class Digest {
     (*this)(center, z, radius, beads, smooth, points, mass, attraction, static_friction, kinetic_friction,
             rolling_friction, magnetic);
   }
+  void add(const engine::Spring& spring) {
+    const auto& [kind, stiffness, length, max_length, persistence_length] = spring;
+    (*this)(kind, stiffness, length, max_length, persistence_length);
+  }
+  void add(const engine::ChainPlacement& placement) {
+    const auto& [spring, points, count, beads, shape, bond_length, lower, upper, direction,
+                 stretching_force] = placement;
+    (*this)(spring, points, count, beads, shape, bond_length, lower, upper, direction, stretching_force);
+  }
+  void add(const engine::MembraneStiffness& stiffness) {
+    const auto& [spring, shear_modulus, max_stretch, bending_rigidity, flat, area_stiffness,
+                 local_area_stiffness, volume_stiffness, volume_ratio] = stiffness;
+    (*this)(spring, shear_modulus, max_stretch, bending_rigidity, flat, area_stiffness, local_area_stiffness,
+            volume_stiffness, volume_ratio);
+  }
+  void add(const engine::MembranePlacement& placement) {
+    const auto& [mesh, stiffness] = placement;
+    (*this)(mesh->vertices, mesh->triangles, stiffness);
+  }
   void add(const engine::LiquidParameters& liquid) {
     const auto& [attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude,
                  dissipation_exponent, dissipation_radius, temperature, initial_density, bulk_density,
@@ -173,7 +192,8 @@ SceneContent content_of(const Scene& scene) {
   // Texts of files count by what was read from them. What stops a run does not say how it goes until then.
   const auto& [name, description, source, files, parameters, units, calibration_file, electrowetting, rail,
                sensing, board, layout, program, default_duration, settle_time, droplets, fills,
-               microparticle_calibration, microparticles, body_forces, schedule, patterns] = scene;
+               microparticle_calibration, microparticles, chains, membranes, body_forces, schedule,
+               patterns] = scene;
   const auto& [liquid, wall, label_grid, microparticle_model, domain, time_step, integrator,
                integrator_lambda, list_skin, seed, observe_interval, angle_window, max_beads, max_memory,
                watchdog, mixture, spline] = parameters;
@@ -198,6 +218,8 @@ SceneContent content_of(const Scene& scene) {
   content["settle_time"] = digest(settle_time);
   content["droplets"] = digest(droplets);
   content["microparticles"] = digest(microparticles);
+  if (!chains.empty()) content["chains"] = digest(chains);
+  if (!membranes.empty()) content["membranes"] = digest(membranes);
   content["body_forces"] = digest(body_forces);
   content["schedule"] = digest(schedule);
   Digest of_patterns;

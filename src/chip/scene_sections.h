@@ -49,6 +49,9 @@ bool read_chip(const engine::YamlReader& root, Scene& scene);
 void read_droplets(const engine::YamlReader& root, Scene& scene);
 /// Microparticles and the calibration of their contact angles.
 void read_microparticles(const engine::YamlReader& root, Scene& scene);
+/// Chains of beads and membranes (scene_bonds.cpp); meshes are read from their files.
+void read_chains(const engine::YamlReader& root, Scene& scene);
+void read_membranes(const engine::YamlReader& root, Scene& scene);
 void read_body_forces(const engine::YamlReader& root, Scene& scene);
 /// The angles of the plate at rest and under the highest voltage lie within the calibration.
 void check_angles(const engine::YamlReader& root, const Scene& scene, const engine::ContactAngleCurve& curve);

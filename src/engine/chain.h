@@ -44,6 +44,7 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
 struct ChainObservation {
   std::uint32_t id = 0;                    ///< from 1, persistent, never used twice in a run
   std::vector<std::uint32_t> beads;        ///< ids, from end to end
+  std::vector<Vector3d> positions;         ///< continuous across periodic sides, r_c
   Vector3d end_to_end = Vector3d::Zero();  ///< from the first bead to the last, r_c
   Vector3d centroid = Vector3d::Zero();    ///< in the image in which the first bead stands, r_c
   double radius_of_gyration = 0;           ///< r_c

@@ -18,7 +18,7 @@ constexpr double of_moving_bead = 230;
 constexpr double of_baoab = 16;   ///< more, of a moving bead
 constexpr double of_species = 2;  ///< more, of a moving bead of a mixture
 constexpr double of_body_bead = 240;
-constexpr double of_bonded_bead = 700;  ///< of a membrane; of a chain less
+constexpr double of_bonded_bead = 1000;  ///< of a membrane, while it is placed; of a chain less
 
 }  // namespace
 

@@ -93,11 +93,10 @@ struct Simulation::State {
   }
 
   /// For liquid at these places. @throws InvalidInput.
-  /// @param bound  how many of them will be bound to others.
-  void require_room(const std::vector<Vector3d>& sites, std::size_t bound = 0) const {
+  void require_room(const std::vector<Vector3d>& sites) const {
     require_memory(parameters, static_cast<double>(beads.size() + sites.size()),
                    static_cast<double>(microparticles.beads().size()),
-                   static_cast<double>(bonds.bead_count() + bound));
+                   static_cast<double>(bonds.bead_count()));
     microparticles.require_clear(sites);
   }
 
@@ -146,6 +145,13 @@ struct Simulation::State {
     } catch (const std::length_error& crowd) {
       stop(fmt::format("{}: the liquid has collapsed; look at its attraction and repulsion", crowd.what()));
     }
+  }
+
+  /// Told before their places are worked out.
+  void require_room_for_bonded(double more) const {
+    require_memory(parameters, static_cast<double>(beads.size()) + more,
+                   static_cast<double>(microparticles.beads().size()),
+                   static_cast<double>(bonds.bead_count()) + more);
   }
 
   void add_bond_forces() {
@@ -323,13 +329,15 @@ void require_sound(const std::vector<std::string>& wrong) {
 
 std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) {
   State& s = *state_;
-  s.require_room(sites, sites.size());
+  s.require_room_for_bonded(static_cast<double>(sites.size()));
+  s.microparticles.require_clear(sites);
   return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
 }
 
 std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
+  s.require_room_for_bonded(placement.points.empty() ? 1.0 * placement.count * placement.beads : 0.0);
   const std::uint32_t first = s.bonds.next_chain();
   const std::vector<std::vector<Vector3d>> chains = chain_sites(placement, s.parameters, s.step, first);
   std::vector<Vector3d> sites;

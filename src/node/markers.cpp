@@ -17,6 +17,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
+constexpr float kMembraneOpacity = 0.6f;
 constexpr float kSeeThrough = 0.25f;  // opacity of a droplet with something inside
 
 // Lengths in r_c.
@@ -24,7 +25,8 @@ constexpr double kPlateThickness = 1.0;
 constexpr double kTopPlateThickness = 0.3;
 constexpr double kPadHeight = 0.05;    // above the plate, so that neither flickers through the other
 constexpr double kBeadDiameter = 0.8;  // beads of a dense liquid just touch: it shows as a closed surface
-constexpr double kLabelGap = 2.0;      // from the top of a droplet to its label
+constexpr double kBondWidth = 0.2;
+constexpr double kLabelGap = 2.0;  // from the top of a droplet to its label
 
 std_msgs::ColorRGBA color(double r, double g, double b, double a = 1) {
   std_msgs::ColorRGBA result;
@@ -303,24 +305,67 @@ MarkerArray microparticle_markers(const Frame& frame, const ConversionContext& c
   return array;
 }
 
+MarkerArray bond_markers(const Frame& frame, const ConversionContext& context) {
+  const double s = context.display_length();
+  const auto scaled = [s](const engine::Vector3d& p) { return point(s * p.x(), s * p.y(), s * p.z()); };
+  MarkerArray array;
+  if (!frame.snapshot->chains.empty()) {
+    Marker lines = marker("chains", 0, Marker::LINE_LIST, frame);
+    lines.scale.x = s * kBondWidth;
+    for (const auto& chain : frame.snapshot->chains) {
+      const std_msgs::ColorRGBA fill = droplet_color(chain.id);
+      for (std::size_t k = 0; k + 1 < chain.positions.size(); ++k) {
+        lines.points.push_back(scaled(chain.positions[k]));
+        lines.points.push_back(scaled(chain.positions[k + 1]));
+        lines.colors.insert(lines.colors.end(), 2, fill);
+      }
+    }
+    lines.color = color(1, 1, 1);
+    array.markers.push_back(std::move(lines));
+  }
+  for (const auto& membrane : frame.snapshot->membranes) {
+    Marker surface = marker("membranes", membrane.id, Marker::TRIANGLE_LIST, frame);
+    surface.scale.x = surface.scale.y = surface.scale.z = 1;
+    surface.color = droplet_color(membrane.id);
+    surface.color.a = kMembraneOpacity;
+    for (const auto& triangle : membrane.mesh->triangles)
+      for (const std::uint32_t vertex : triangle)
+        surface.points.push_back(scaled(membrane.positions[vertex]));
+    array.markers.push_back(std::move(surface));
+  }
+  return array;
+}
+
+namespace {
+
+Marker gone(const char* name_space, std::uint32_t id, ros::Time stamp) {
+  Marker result;
+  result.header.frame_id = kChipFrame;
+  result.header.stamp = stamp;
+  result.ns = name_space;
+  result.id = static_cast<std::int32_t>(id);
+  result.action = Marker::DELETE;
+  result.pose.orientation.w = 1;
+  return result;
+}
+
+}  // namespace
+
 MarkerArray deletions(const std::set<std::uint32_t>& droplets, const std::set<std::uint32_t>& microparticles,
                       ros::Time stamp) {
   MarkerArray array;
-  const auto take_off = [&array, stamp](const char* name_space, std::uint32_t id) {
-    Marker gone;
-    gone.header.frame_id = kChipFrame;
-    gone.header.stamp = stamp;
-    gone.ns = name_space;
-    gone.id = static_cast<std::int32_t>(id);
-    gone.action = Marker::DELETE;
-    gone.pose.orientation.w = 1;
-    array.markers.push_back(gone);
-  };
   for (const std::uint32_t id : droplets) {
-    take_off("droplets", id);
-    take_off("droplet_labels", id);
+    array.markers.push_back(gone("droplets", id, stamp));
+    array.markers.push_back(gone("droplet_labels", id, stamp));
   }
-  for (const std::uint32_t id : microparticles) take_off("microparticles", id);
+  for (const std::uint32_t id : microparticles) array.markers.push_back(gone("microparticles", id, stamp));
+  return array;
+}
+
+MarkerArray bond_deletions(bool chains, const std::set<std::uint32_t>& membranes, ros::Time stamp) {
+  MarkerArray array;
+  if (chains) array.markers.push_back(gone("chains", 0, stamp));
+  for (const std::uint32_t id : membranes) array.markers.push_back(gone("membranes", id, stamp));
   return array;
 }
 

@@ -9,7 +9,8 @@
 
 /// From frames to what RViz draws: pure functions. All in frame chip, scaled by the display scale. Namespaces
 /// and ids are stable: plate (0), top_plate (0), rail (0), electrodes and electrode_labels (channel),
-/// droplets and droplet_labels (droplet id), microparticles (microparticle id), vapour (0).
+/// droplets and droplet_labels (droplet id), microparticles (microparticle id), vapour (0), chains (0),
+/// membranes (membrane id).
 namespace dmf::node {
 
 /// The plate and the top plate over it, each electrode coloured by its voltage (grey 0 V, orange at the
@@ -25,6 +26,13 @@ visualization_msgs::MarkerArray droplet_markers(const Frame& frame, const Conver
 /// from amber (it repels the liquid) to teal, the other what a magnet does to it: red when it is magnetic,
 /// else white.
 visualization_msgs::MarkerArray microparticle_markers(const Frame& frame, const ConversionContext& context);
+
+/// The bonds of all chains as lines, and each membrane as its triangles, coloured by id.
+visualization_msgs::MarkerArray bond_markers(const Frame& frame, const ConversionContext& context);
+
+/// Takes the bonds of chains and membranes that are gone off the screen.
+visualization_msgs::MarkerArray bond_deletions(bool chains, const std::set<std::uint32_t>& membranes,
+                                               ros::Time stamp);
 
 /// Takes droplets and microparticles that are gone off the screen.
 visualization_msgs::MarkerArray deletions(const std::set<std::uint32_t>& droplets,

@@ -172,6 +172,12 @@ void Publisher::publish_markers(const Frame& frame) {
   add(deletions(take_gone(drawn_droplets_, frame.snapshot->droplets),
                 take_gone(drawn_microparticles_, frame.snapshot->microparticles), to_ros_time(frame.stamp)));
 
+  const bool has_chains = !frame.snapshot->chains.empty();
+  add(bond_markers(frame, context_));
+  add(bond_deletions(drawn_chains_ && !has_chains, take_gone(drawn_membranes_, frame.snapshot->membranes),
+                     to_ros_time(frame.stamp)));
+  drawn_chains_ = has_chains;
+
   if (joined || chip_changed_ || Clock::now() >= next_chip_markers_) {
     add(chip_markers(frame, context_));
     chip_changed_ = false;

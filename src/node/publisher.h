@@ -66,7 +66,8 @@ class Publisher {
   // Of the publisher thread.
   dmf_sim::ElectrodeArray last_electrodes_;
   bool electrodes_published_ = false;
-  std::set<std::uint32_t> drawn_droplets_, drawn_microparticles_;
+  std::set<std::uint32_t> drawn_droplets_, drawn_microparticles_, drawn_membranes_;
+  bool drawn_chains_ = false;
   std::uint32_t marker_subscribers_ = 0;
   std::uint32_t transform_run_ = 0;
   std::uint64_t transform_stamp_ = 0;  ///< ns

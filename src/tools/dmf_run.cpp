@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
                  "auto, " + fmt::format("{}", fmt::join(engine::available_kernels(), ", ")))
       ->capture_default_str();
   auto* output =
-      app.add_option("--out", options.output, "folder for droplets.csv, microparticles.csv and checkpoints");
+      app.add_option("--out", options.output, "folder for tables (droplets.csv, ...) and checkpoints");
   app.add_option("--checkpoint-every", options.checkpoint_every, "steps between checkpoints in --out")
       ->needs(output);
   app.add_option("--checkpoint-period", options.checkpoint_period,

@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
       {"forces", study_forces},
       {"inner_flow", study_inner_flow},
       {"plates", study_plates},
+      {"chain", study_chain},
+      {"membrane", study_membrane},
       {"splitting", study_splitting},
       {"square_channel", study_square_channel},
       {"transport_velocity", study_transport_velocity}};
@@ -54,6 +56,8 @@ int main(int argc, char** argv) {
       "  square_channel   plain DPD along a square channel against the series, mass flow against Chen's\n"
       "  transport_velocity  how fast a droplet moves along electrodes under what voltage\n"
       "  protocols        success rate of the controller's protocols, with faults too\n"
+      "  chain            chains: random walks, relaxation, good solvent, pulled, in a channel\n"
+      "  membrane         membranes: what they keep, what leaks, a deflated sphere, a red cell\n"
       "Microparticles:\n"
       "  microparticle_angle  attraction -> contact angle, floating in a film; writes microparticle.yaml\n" +
       transport_titles +

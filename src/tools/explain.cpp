@@ -62,6 +62,22 @@ std::string about_electrodes(const chip::Scene& scene) {
   return text;
 }
 
+double chain_count(const chip::Scene& scene) {
+  double chains = 0;
+  for (const auto& placement : scene.chains) chains += placement.count;
+  return chains;
+}
+
+/// Of all chains and membranes of a scene.
+double bonded_beads(const chip::Scene& scene) {
+  double beads = 0;
+  for (const auto& chains : scene.chains)
+    beads +=
+        chains.points.empty() ? 1.0 * chains.count * chains.beads : static_cast<double>(chains.points.size());
+  for (const auto& membrane : scene.membranes) beads += static_cast<double>(membrane.mesh->vertices.size());
+  return beads;
+}
+
 /// Of all microparticles of a scene; nearly, where the scene leaves the number to the engine.
 double body_beads(const chip::Scene& scene) {
   double beads = 0;
@@ -165,7 +181,8 @@ std::string explain(const chip::Scene& scene) {
   // Less where droplets and microparticles are in the way.
   for (const auto& fill : scene.fills)
     moving += (fill.upper - fill.lower).prod() * initial_density(parameters, fill.species);
-  const engine::MemoryNeed need = engine::memory_need(parameters, moving, body_beads(scene));
+  const double bonded = bonded_beads(scene);
+  const engine::MemoryNeed need = engine::memory_need(parameters, moving, body_beads(scene), bonded);
   std::string text = fmt::format("{}: {}\n", scene.name, scene.description);
   text += fmt::format("domain       {} x {} x {} r_c = {:.3g} x {:.3g} x {:.3g} mm\n", size.x(), size.y(),
                       size.z(), size.x() * units.length_m * 1e3, size.y() * units.length_m * 1e3,
@@ -177,6 +194,9 @@ std::string explain(const chip::Scene& scene) {
     text += fmt::format("; boxes filled: {}\n", scene.fills.size());
   }
   for (const std::string& notice : engine::notices(parameters)) text += "note         " + notice + "\n";
+  if (bonded > 0)
+    text += fmt::format("bonded       {:.0f} beads in {:.0f} chains and {} membranes: {:.1f} MB\n", bonded,
+                        chain_count(scene), scene.membranes.size(), need.bonds / engine::bytes_per_megabyte);
   text += fmt::format("wall         about {:.0f} frozen beads (looked up, never looped over)\n",
                       engine::wall_beads(parameters));
   text += about_electrodes(scene);
@@ -187,7 +207,7 @@ std::string explain(const chip::Scene& scene) {
       "{:.0f} MB, that is {} moving beads\n",
       megabytes(need.total()), megabytes(need.liquid), megabytes(need.wall), megabytes(need.cells),
       megabytes(need.bodies), parameters.max_memory,
-      engine::most_moving_beads(parameters, body_beads(scene)));
+      engine::most_moving_beads(parameters, body_beads(scene), bonded));
   text += fmt::format("one r_c      {:.4g} um, one tau {:.4g} us, one bead {:.4g} kg\n", units.length_m * 1e6,
                       units.time_s * 1e6, units.mass_kg);
   text += fmt::format("one r_c/tau  {:.4g} mm/s\n", units.velocity_m_per_s() * 1e3);

@@ -22,6 +22,18 @@ constexpr const char* kMicroparticleHead =
     "contact_fraction,normal_force_mdpd,drive_x_mdpd,drive_y_mdpd,drive_z_mdpd,friction_x_mdpd,friction_y_"
     "mdpd,"
     "immersion,droplet,place";
+constexpr const char* kChainHead =
+    "step,time_mdpd,time_s,chain,beads,x_mdpd,y_mdpd,z_mdpd,end_to_end_x_mdpd,end_to_end_y_mdpd,end_to_end_z_"
+    "mdpd,radius_of_gyration_mdpd,contour_length_mdpd,longest_bond_mdpd,energy_mdpd";
+constexpr const char* kMembraneHead =
+    "step,time_mdpd,time_s,membrane,beads,x_mdpd,y_mdpd,z_mdpd,area_mdpd,volume_mdpd,reduced_volume,length_x_"
+    "mdpd,length_y_mdpd,length_z_mdpd,gyration_short_mdpd,gyration_middle_mdpd,gyration_long_mdpd,longest_"
+    "edge_"
+    "mdpd,energy_mdpd";
+
+std::string text_of(const engine::Vector3d& v) {
+  return fmt::format("{:.5f},{:.5f},{:.5f}", v.x(), v.y(), v.z());
+}
 
 [[noreturn]] void refused(const std::string& file) {
   throw std::runtime_error(fmt::format("{}: write failed; is the disk full?", file));
@@ -87,19 +99,21 @@ void Table::sync() {
 
 RunLog::RunLog(const std::string& folder, std::optional<std::uint64_t> kept)
     : droplets_(folder, "droplets.csv", kDropletHead, kept),
-      microparticles_(folder, "microparticles.csv", kMicroparticleHead, kept) {}
+      microparticles_(folder, "microparticles.csv", kMicroparticleHead, kept),
+      chains_(folder, "chains.csv", kChainHead, kept),
+      membranes_(folder, "membranes.csv", kMembraneHead, kept) {}
 
 void RunLog::write(const engine::Snapshot& snapshot, const engine::Units& units) {
   if (!droplets_.wanted()) return;
   for (const auto& droplet : snapshot.droplets) add(droplet, snapshot, units);
   for (const auto& body : snapshot.microparticles) add(body, snapshot, units);
-  droplets_.flush();
-  microparticles_.flush();
+  for (const auto& chain : snapshot.chains) add(chain, snapshot, units);
+  for (const auto& membrane : snapshot.membranes) add(membrane, snapshot, units);
+  for (Table* table : {&droplets_, &microparticles_, &chains_, &membranes_}) table->flush();
 }
 
 void RunLog::sync() {
-  droplets_.sync();
-  microparticles_.sync();
+  for (Table* table : {&droplets_, &microparticles_, &chains_, &membranes_}) table->sync();
 }
 
 void RunLog::add(const engine::DropletObservation& d, const engine::Snapshot& snapshot,
@@ -126,6 +140,23 @@ void RunLog::add(const engine::MicroparticleObservation& m, const engine::Snapsh
                                   m.contact_fraction, m.normal_force, vector(m.drive_force),
                                   m.friction_force.x(), m.friction_force.y(), m.immersion, m.droplet,
                                   kPlaces.at(static_cast<std::size_t>(m.place))));
+}
+
+void RunLog::add(const engine::ChainObservation& c, const engine::Snapshot& snapshot,
+                 const engine::Units& units) {
+  chains_.add(fmt::format("{},{:.6g},{:.6g},{},{},{},{},{:.5f},{:.5f},{:.5f},{:.5f}", snapshot.step,
+                          snapshot.time, snapshot.time * units.time_s, c.id, c.beads.size(),
+                          text_of(c.centroid), text_of(c.end_to_end), c.radius_of_gyration, c.contour_length,
+                          c.longest_bond, c.energy));
+}
+
+void RunLog::add(const engine::MembraneObservation& m, const engine::Snapshot& snapshot,
+                 const engine::Units& units) {
+  membranes_.add(fmt::format("{},{:.6g},{:.6g},{},{},{},{:.5f},{:.5f},{:.6f},{},{},{:.5f},{:.5f}",
+                             snapshot.step, snapshot.time, snapshot.time * units.time_s, m.id, m.beads.size(),
+                             text_of(m.centroid), m.area, m.volume, m.reduced_volume,
+                             text_of(m.upper - m.lower), text_of(m.gyration_radii), m.longest_edge,
+                             m.energy.total()));
 }
 
 }  // namespace dmf::tools

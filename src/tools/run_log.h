@@ -33,7 +33,7 @@ class Table {
   std::ofstream out_;
 };
 
-/// One line a look and droplet, and a look and microparticle; droplets in SI units beside reduced ones.
+/// One line a look and droplet, microparticle, chain or membrane; droplets in SI units beside reduced ones.
 class RunLog {
  public:
   /// @param kept  as Table has it.
@@ -47,8 +47,12 @@ class RunLog {
            const engine::Units& units);
   void add(const engine::MicroparticleObservation& body, const engine::Snapshot& snapshot,
            const engine::Units& units);
+  void add(const engine::ChainObservation& chain, const engine::Snapshot& snapshot,
+           const engine::Units& units);
+  void add(const engine::MembraneObservation& membrane, const engine::Snapshot& snapshot,
+           const engine::Units& units);
 
-  Table droplets_, microparticles_;
+  Table droplets_, microparticles_, chains_, membranes_;
 };
 
 }  // namespace dmf::tools

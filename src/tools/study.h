@@ -122,6 +122,10 @@ void study_transport(const std::string& name, const StudyOptions& options);
 void study_forces(const StudyOptions& options);
 /// Flow of the liquid around a microparticle, and in a droplet without one.
 void study_inner_flow(const StudyOptions& options);
+/// Chains: random walks, Rouse's time, good solvent, force and extension, in a channel (Liu 3.4, 4.3).
+void study_chain(const StudyOptions& options);
+/// Membranes: what they keep and what leaks, red cell, deflated sphere (Liu 4.4).
+void study_membrane(const StudyOptions& options);
 void study_plates(const StudyOptions& options);
 void study_splitting(const StudyOptions& options);
 void study_square_channel(const StudyOptions& options);  ///< plain DPD along a duct (Chen 3.1)

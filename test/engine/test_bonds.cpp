@@ -1,8 +1,11 @@
 // Springs and chains of moving beads.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
+#include <memory>
 
 #include "engine/bonds/spring.h"
 #include "engine/simulation.h"
@@ -355,6 +358,57 @@ TEST(Chains, ThatCanNotBeAreRefusedWhole) {
   finer.add_chains(chains_in(parameters, harmonic(40000, 0.5), 2, 5));
 }
 
+TEST(SavedBonds, ThatAreForgedAreRefusedOrRun) {
+  Parameters parameters = periodic_box(6);
+  Simulation good(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  good.fill_box();
+  good.add_chains(chains_in(parameters, wlc(1.2, 0.1), 3, 5));
+  TriangleMesh mesh = icosphere(0);
+  for (Vector3d& v : mesh.vertices) v += Vector3d(3, 3, 3);
+  MembraneStiffness short_springs;
+  short_springs.max_stretch = 1.5;
+  good.add_membrane({std::make_shared<const TriangleMesh>(mesh), short_springs});
+  good.step();
+  const std::string state = good.save_state();
+  // Chains and membranes stand at its end.
+  const std::size_t of_chain = 4 + 4 + 4 * 8 + 3 * 8 + 8 + 5 * 4, of_membrane = 4 + 16 + 12 * 24 + 20 * 12;
+  const std::size_t tail = 24 + 3 * of_chain + of_membrane + 4 + 1 + 7 * 8 + 8 + 12 * 4;
+  std::uint32_t draw = 0;
+  const auto below = [&draw](std::size_t n) {
+    return static_cast<std::size_t>(scatter(draw++) * static_cast<double>(n));
+  };
+  int refused = 0, ran = 0;
+  for (int k = 0; k < 1500; ++k) {
+    std::string forged = state;
+    const std::size_t at = forged.size() - 1 - below(tail);
+    if (k % 3 == 0) {
+      forged[at] = static_cast<char>(below(256));
+    } else {
+      const std::uint32_t evil[] = {0u, 1u, 2u, 0x7fc00000u, 0xffffffffu, 0x7ff80000u, 0x80000000u, 1u << 20};
+      const std::uint32_t word = evil[below(8)];
+      std::memcpy(&forged[std::min(at, forged.size() - 4)], &word, 4);
+    }
+    Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+    try {
+      simulation.load_state(forged);
+    } catch (const InvalidInput&) {
+      ++refused;
+      continue;
+    }
+    try {
+      for (int step = 0; step < 2; ++step) simulation.step();
+    } catch (const Instability&) {
+    }
+    simulation.observe({true, true});
+    ++ran;
+  }
+  EXPECT_GT(refused, 500);
+  EXPECT_GT(ran, 100);
+  std::string short_one = state;
+  short_one.resize(state.size() - 5);
+  EXPECT_TRUE(holds(refusal([&] { good.load_state(short_one); }), "saved state: ends early"));
+}
+
 TEST(Chains, CountInMemory) {
   Parameters parameters = periodic_box(9);
   parameters.max_memory = 12;
@@ -362,6 +416,10 @@ TEST(Chains, CountInMemory) {
   EXPECT_TRUE(
       holds(refusal([&] { simulation.add_chains(chains_in(parameters, harmonic(50, 0.5), 1000, 10)); }),
             "moving beads in all"));
+  // Before so many places are worked out.
+  EXPECT_TRUE(holds(
+      refusal([&] { simulation.add_chains(chains_in(parameters, harmonic(50, 0.5), 1'000'000, 100'000)); }),
+      "moving beads in all"));
 }
 
 }  // namespace

@@ -166,6 +166,35 @@ TEST_F(MarkersTest, ADropletThatCarriesIsSeeThrough) {
   EXPECT_GT(markers.at({"droplets", 7}).color.a, 0.5);
 }
 
+TEST_F(MarkersTest, BondsAreLinesAndMembranesTrianglesUntilTheyAreGone) {
+  EXPECT_TRUE(bond_markers(*frame_, context_).markers.empty());
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  engine::ChainObservation chain;
+  chain.id = 2;
+  chain.positions = {{0, 0, 1}, {1, 0, 1}, {1, 2, 1}};
+  snapshot->chains = {chain, chain};
+  engine::MembraneObservation membrane;
+  membrane.id = 4;
+  membrane.mesh = std::make_shared<const engine::TriangleMesh>(engine::icosphere(0));
+  membrane.positions = membrane.mesh->vertices;
+  snapshot->membranes = {membrane};
+  frame_->snapshot = snapshot;
+  const auto markers = by_id(bond_markers(*frame_, context_));
+  ASSERT_EQ(markers.size(), 2u);
+  const Marker& lines = markers.at({"chains", 0});
+  EXPECT_EQ(lines.type, Marker::LINE_LIST);
+  ASSERT_EQ(lines.points.size(), 2u * 2 * 2);
+  EXPECT_EQ(lines.colors.size(), lines.points.size());
+  EXPECT_NEAR(lines.points[3].y - lines.points[2].y, 2 * context_.display_length(), 1e-12);
+  const Marker& surface = markers.at({"membranes", 4});
+  EXPECT_EQ(surface.type, Marker::TRIANGLE_LIST);
+  EXPECT_EQ(surface.points.size(), 3u * 20);
+  const auto gone = by_id(bond_deletions(true, {4}, ros::Time(3)));
+  ASSERT_EQ(gone.size(), 2u);
+  EXPECT_EQ(gone.at({"chains", 0}).action, Marker::DELETE);
+  EXPECT_EQ(gone.at({"membranes", 4}).action, Marker::DELETE);
+}
+
 TEST_F(MarkersTest, WhatIsGoneIsDeletedDropletsWithTheirLabels) {
   const auto markers = by_id(deletions({4, 9}, {9}, ros::Time(3)));
   ASSERT_EQ(markers.size(), 5u);

@@ -78,6 +78,29 @@ TEST(HeadlessRun, ResumedTablesAreThoseOfAnUninterruptedRun) {
   EXPECT_EQ(contents(table), contents(whole.output + "/droplets.csv"));
 }
 
+TEST(HeadlessRun, WritesALineALookAndChainAndMembrane) {
+  RunOptions options = tiny(100);
+  options.output = fresh_folder("bonded");
+  std::filesystem::create_directories(options.output);
+  options.scene = options.output + "/bonded.yaml";
+  std::ofstream(options.scene)
+      << "domain: {lower: [0, 0, 0], upper: [12, 12, 12], sides: {x: periodic, y: periodic, z: periodic}}\n"
+         "droplets: [{center: [6, 6, 6], radius: 3}]\n"
+         "chains: [{spring: {kind: harmonic, stiffness: 50, length: 0.5}, count: 2, beads: 4}]\n"
+         "membranes: [{center: [6, 6, 6], radius: 2, subdivisions: 1}]\n";
+  headless_run(options);
+  for (const auto& [name, a_look] : {std::pair{"chains.csv", 2}, {"membranes.csv", 1}}) {
+    const std::string table = contents(options.output + "/" + name);
+    const auto lines = std::count(table.begin(), table.end(), '\n');
+    const std::string head = table.substr(0, table.find('\n'));
+    EXPECT_EQ((lines - 1) % a_look, 0) << name;
+    EXPECT_GE(lines, 1 + 2 * a_look) << name;
+    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    EXPECT_EQ(commas(table.substr(table.rfind('\n', table.size() - 2))), commas(head)) << name;
+    EXPECT_NE(table.find("\n100,"), std::string::npos) << name;
+  }
+}
+
 TEST(HeadlessRun, ACheckpointBetweenTwoLooksLeavesNoLineOfItsOwn) {
   RunOptions whole = tiny(150);
   whole.output = fresh_folder("looks");

@@ -201,8 +201,9 @@ std::vector<ChainObservation> Bonds::observe_chains(const Beads& beads) const {
   std::vector<ChainObservation> seen;
   seen.reserve(chains_.size());
   for (const Chain& chain : chains_) {
-    const std::vector<Vector3d> positions = positions_of(chain, beads);
     ChainObservation& one = seen.emplace_back();
+    one.positions = positions_of(chain, beads);
+    const std::vector<Vector3d>& positions = one.positions;
     one.id = chain.id;
     one.beads = chain.beads;
     one.end_to_end = positions.back() - positions.front();

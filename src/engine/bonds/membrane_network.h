@@ -13,7 +13,7 @@ struct MembraneStiffness {
   SpringKind spring = SpringKind::wlc;  ///< along the edges: wlc with a repulsion, or harmonic
   double shear_modulus = 30;            ///< mu of the net, k_BT / r_c^2; (0, 1e5]
   double max_stretch = 2.2;             ///< of wlc: longest edge over that at rest; [1.2, 10]
-  double bending_rigidity = 10;         ///< kappa, k_BT; [0, 1e5]
+  double bending_rigidity = 5;          ///< kappa, k_BT; [0, 1e5]
   bool flat = false;                    ///< unbent when flat; else in the shape in which it was placed
   double area_stiffness = 100;          ///< k_a, of the whole area, k_BT / r_c^2; [0, 1e6]
   double local_area_stiffness = 20;     ///< k_d, of every triangle, k_BT / r_c^2; [0, 1e6]

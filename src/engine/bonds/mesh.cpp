@@ -187,6 +187,15 @@ TriangleMesh icosphere(int subdivisions) {
   return mesh;
 }
 
+int usual_subdivisions(double radius) {
+  constexpr double shortest = 0.75;            // r_c
+  constexpr double edge_of_icosahedron = 1.2;  // of equilateral triangles that cover the unit sphere
+  int subdivisions = 0;
+  for (double edge = edge_of_icosahedron * radius / 2; edge >= shortest && subdivisions < 6; edge /= 2)
+    ++subdivisions;
+  return subdivisions;
+}
+
 TriangleMesh red_cell(int subdivisions, double radius) {
   constexpr double c0 = 0.207161, c1 = 2.002558, c2 = -1.122762;
   TriangleMesh mesh = icosphere(subdivisions);

@@ -31,6 +31,10 @@ double reduced_volume(double area, double volume);
 /// 10 * 4^subdivisions + 2 vertices. @param subdivisions  [0, 6]
 TriangleMesh icosphere(int subdivisions);
 
+/// The finest icosphere of this radius whose edges are 0.75 r_c long or longer in the mean, 6 at most: the
+/// beads of a finer one repel each other so much that its area grows (docs/physics.md).
+int usual_subdivisions(double radius);
+
 /// Shape of a red blood cell at rest, around the z axis (Evans and Fung 1972, Microvasc. Res. 4, 335):
 /// z = +- R/2 sqrt(1 - s^2) (c0 + c1 s^2 + c2 s^4), s the distance from the axis over R.
 /// @param radius  R, half the diameter, r_c.
