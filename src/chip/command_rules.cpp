@@ -57,6 +57,8 @@ class Rules {
   }
 
   void operator()(const SetWettability& command) {
+    if (scene_.parameters.wall.attraction)
+      note("contact angles on a wall with wall.attraction, allowed: on a wall without");
     if (command.positions.empty()) note("positions: none given, allowed: one or more");
     check_lengths("positions", command.positions.size(), "contact angles", command.contact_angles_deg.size());
     const std::size_t longest = std::max(command.positions.size(), command.contact_angles_deg.size());

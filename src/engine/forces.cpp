@@ -25,7 +25,13 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   constants_.laws = pair_table(parameters);
   constants_.bodies.count_liquid = parameters.microparticles.counts_liquid;
   constants_.bodies.counted_by_liquid = parameters.microparticles.counted_by_liquid;
-  constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
+  constants_.density_normalization =
+      density_normalization(parameters.liquid.repulsion_radius, parameters.dimensions);
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  constants_.wall_motion.lower.head<2>() = boundaries.lower_velocity.cast<float>();
+  constants_.wall_motion.upper.head<2>() = boundaries.upper_velocity.cast<float>();
+  constants_.wall_motion.middle =
+      static_cast<float>(0.5 * (parameters.domain.lower.z() + parameters.domain.upper.z()));
   for (int axis = 0; axis < 3; ++axis) {
     if (!parameters.domain.periodic(axis)) continue;
     constants_.period[axis] = static_cast<float>(parameters.domain.size()[axis]);

@@ -3,47 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "engine/noise.h"
+#include "engine/walls/reflection.h"
 
 namespace dmf::engine {
 namespace {
-
-/// The box as the bounce-back sees it: infinitely wide along periodic axes.
-struct Planes {
-  float lower[3], upper[3];
-};
-
-Planes planes_of(const Domain& domain) {
-  Planes planes;
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool open = domain.periodic(axis);
-    planes.lower[axis] =
-        open ? -std::numeric_limits<float>::infinity() : static_cast<float>(domain.lower[axis]);
-    planes.upper[axis] =
-        open ? std::numeric_limits<float>::infinity() : static_cast<float>(domain.upper[axis]);
-  }
-  return planes;
-}
-
-bool outside(const Planes& planes, const float* at) {
-  bool result = false;
-  for (int axis = 0; axis < 3; ++axis)
-    result |= at[axis] < planes.lower[axis] || at[axis] > planes.upper[axis];
-  return result;
-}
-
-/// Fraction of the way from `from` along `way` to the first plane that is crossed.
-float fraction_to_plane(const Planes& planes, const float* from, const float* way) {
-  float fraction = 1.f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float to = from[axis] + way[axis];
-    if (to < planes.lower[axis]) fraction = std::min(fraction, (planes.lower[axis] - from[axis]) / way[axis]);
-    if (to > planes.upper[axis]) fraction = std::min(fraction, (planes.upper[axis] - from[axis]) / way[axis]);
-  }
-  return std::max(fraction, 0.f);
-}
 
 /// How far a bead goes with its velocity and force in a drift.
 struct Drift {
@@ -52,9 +17,10 @@ struct Drift {
   float prediction;  ///< predicted = v' + prediction f
 };
 
-DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift) {
+template <class Sides>
+DriftReport move_between(const Sides& sides, Beads& beads, const Parameters& parameters, std::uint64_t step,
+                         const Drift& drift) {
   const StepKey key = step_key(parameters.seed, step, Stream::pair);
-  const Planes planes = planes_of(parameters.domain);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
   float largest = 0;
   std::int64_t wild = -1;
@@ -68,15 +34,8 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
                      kicked[2] + drift.prediction * f.z};
     const float way[3] = {drift.travel * kicked[0], drift.travel * kicked[1], drift.travel * kicked[2]};
     float at[3] = {p.x + way[0], p.y + way[1], p.z + way[2]};
-    if (outside(planes, at)) {
-      const float from[3] = {p.x, p.y, p.z};
-      const float travelled = 2.f * fraction_to_plane(planes, from, way) - 1.f;
-      for (int axis = 0; axis < 3; ++axis) {
-        at[axis] = std::clamp(from[axis] + way[axis] * travelled, planes.lower[axis], planes.upper[axis]);
-        kicked[axis] = -kicked[axis];
-        seen[axis] = -seen[axis];
-      }
-    }
+    if (sides.concerns(at))
+      sides.send_back({beads.id[i], {p.x, p.y, p.z}, way, drift.travel}, at, kicked, seen);
     const float moved = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
     if (!(moved < largest_step * largest_step)) wild = std::max<std::int64_t>(wild, i);
     const Record& listed = beads.listed[i];
@@ -91,12 +50,21 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
   return {largest, wild};
 }
 
+/// @param half  0 for the first or only drift of a step, 1 for the second.
+DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, int half,
+                 const Drift& drift) {
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  if (boundaries.usual() && !boundaries.moving())
+    return move_between(BounceBack(parameters.domain), beads, parameters, step, drift);
+  return move_between(Reflections(parameters, 2 * step + half), beads, parameters, step, drift);
+}
+
 }  // namespace
 
 DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
   const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
-  return move(beads, parameters, step, {0.5f * dt, dt, prediction});
+  return move(beads, parameters, step, 0, {0.5f * dt, dt, prediction});
 }
 
 void add_gravity(Beads& beads, const Vector3d& gravity) {
@@ -122,12 +90,12 @@ void finish(Beads& beads, const Parameters& parameters) {
 
 DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
-  return move(beads, parameters, step, {dt, 0.5f * dt, 0.f});
+  return move(beads, parameters, step, 0, {dt, 0.5f * dt, 0.f});
 }
 
 DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step) {
   const float dt = static_cast<float>(parameters.time_step);
-  return move(beads, parameters, step, {0.f, 0.5f * dt, 0.f});
+  return move(beads, parameters, step, 1, {0.f, 0.5f * dt, 0.f});
 }
 
 }  // namespace dmf::engine

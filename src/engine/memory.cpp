@@ -25,6 +25,7 @@ double wall_beads(const Parameters& parameters) {
   const auto cells_along = [&](int axis) {
     return std::max(1.0, std::round(size[axis] / parameters.wall.lattice_constant));
   };
+  if (parameters.dimensions == 2) return plates * parameters.wall.layers * cells_along(0);
   return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1);
 }
 

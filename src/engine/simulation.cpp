@@ -16,6 +16,7 @@
 #include "engine/observe/carriage.h"
 #include "engine/observe/droplet_tracker.h"
 #include "engine/observe/state_hash.h"
+#include "engine/observe/temperature.h"
 #include "engine/observe/virial.h"
 #include "engine/observe/watchdog.h"
 #include "engine/observe/wetted_area.h"
@@ -43,7 +44,8 @@ struct Simulation::State {
       : parameters(checked(p)),
         curve(std::move(c)),
         threads(execution.threads > 0 ? execution.threads : omp_get_max_threads()),
-        wall(parameters.domain, parameters.wall, parameters.liquid.range() + parameters.list_skin),
+        wall(parameters.domain, parameters.wall, parameters.liquid.range() + parameters.list_skin,
+             parameters.dimensions),
         microparticles(parameters),
         pairs(parameters),
         forces(parameters, execution.kernel),
@@ -64,10 +66,15 @@ struct Simulation::State {
   std::uint32_t next_bead_id = 0;
   std::string fault;
 
+  /// Of a liquid that flows, or is hot enough to be one, what moves relative to the beads around it.
   double temperature() const {
-    double twice_energy = 0;
-    for (const Record& v : beads.velocity) twice_energy += velocity_of(v).squaredNorm();
-    return beads.size() > 0 ? twice_energy / (3.0 * static_cast<double>(beads.size())) : 0.0;
+    const double kinetic = kinetic_temperature(beads, parameters.dimensions);
+    const bool driven =
+        !far.gravity.isZero(0) || parameters.boundaries.moving() || parameters.boundaries.shear_rate != 0;
+    if (!driven && kinetic <= parameters.watchdog.highest_temperature * parameters.liquid.temperature)
+      return kinetic;
+    const double local = local_temperature(beads, pairs.blocks(), parameters.dimensions);
+    return local > 0 ? local : kinetic;
   }
 
   /// What a force from afar may do: what starts from rest in every step anew moves by a dt^2, at most 0.001
@@ -82,6 +89,9 @@ struct Simulation::State {
                                        key, value.x(), value.y(), value.z(), allowed, unit));
     };
     check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
+    if (parameters.dimensions == 2 && forces.gravity.y() != 0)
+      throw InvalidInput(
+          fmt::format("body_forces.gravity: {} along y, allowed: 0 with dimensions: 2", forces.gravity.y()));
     double lightest = std::numeric_limits<double>::infinity();
     for (const Microparticle& particle : microparticles.all())
       if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
@@ -141,7 +151,7 @@ struct Simulation::State {
   }
 
   void require_sound() {
-    const std::string found = find_fault(parameters, beads, microparticles, tracker, carriage);
+    const std::string found = find_fault(parameters, beads, temperature(), microparticles, tracker, carriage);
     if (!found.empty()) stop(found);
   }
 
@@ -202,6 +212,11 @@ struct Simulation::State {
 
 Simulation::Simulation(const Parameters& parameters, ContactAngleCurve curve, const Execution& execution)
     : state_(std::make_unique<State>(parameters, std::move(curve), execution)) {
+  if (parameters.wall.attraction) {
+    const float attraction = static_cast<float>(*parameters.wall.attraction);
+    state_->wall.set_attraction(std::vector<float>(state_->wall.size(), attraction));
+    return;
+  }
   state_->wall.set_top_wettability(parameters.wall.top_contact_angle, state_->curve);
   const double angle = state_->curve.max_angle();
   set_wettability([angle](double, double) { return angle; });
@@ -249,6 +264,9 @@ void Simulation::refresh() {
 }
 
 void Simulation::set_wettability(const ContactAngleField& field) {
+  if (state_->parameters.wall.attraction)
+    throw InvalidInput(fmt::format("wettability: a contact angle, allowed: none with wall.attraction ({})",
+                                   *state_->parameters.wall.attraction));
   state_->wall.set_wettability(field, state_->curve);
 }
 
@@ -329,6 +347,11 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
 
 std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
   State& s = *state_;
+  const BoundaryParameters& boundaries = s.parameters.boundaries;
+  if (s.parameters.dimensions == 2 || boundaries.moving() || boundaries.shear_rate != 0)
+    throw InvalidInput(
+        "microparticle: with dimensions: 2, moving sides or a shear rate, allowed: in a box at rest of three "
+        "dimensions");
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
                  static_cast<double>(s.microparticles.beads().size() + told));

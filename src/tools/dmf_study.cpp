@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
       {"commanded_angle", study_commanded_angle},
       {"liquid", study_liquid},
       {"dpd_liquid", study_dpd_liquid},
+      {"poiseuille", study_poiseuille},
       {"crossing", study_crossing},
       {"time_step", study_time_step},
       {"protocols", study_protocols},
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
       "  commanded_angle  commanded against shown angle, through the calibration\n"
       "  liquid           temperature, density, surface tension, viscosity\n"
       "  dpd_liquid       plain DPD: viscosity, diffusivity, Schmidt number against kinetic theory\n"
+      "  poiseuille       plain DPD in a channel, 3D and 2D, against Lan's and the parabola\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"

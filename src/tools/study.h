@@ -93,6 +93,8 @@ void study_commanded_angle(
     const StudyOptions& options);                ///< commanded against shown angle, through the calibration
 void study_liquid(const StudyOptions& options);  ///< temperature, density, surface tension twice, viscosity
 void study_dpd_liquid(const StudyOptions& options);  ///< plain DPD against kinetic theory (Liu table 1)
+void study_poiseuille(
+    const StudyOptions& options);  ///< plain DPD between walls, driven by a body force (Lan 2.3)
 void study_crossing(
     const StudyOptions& options);  ///< a droplet on a wettability gradient: time against Lan's
 void study_time_step(

@@ -194,6 +194,24 @@ inline std::vector<System> all_systems() {
     s.parameters.liquid.dissipation_radius = 0.8;
     scatter_beads(s, 6, {0, 0, 0}, {9, 9, 1.2}, everywhere);
   }
+  {
+    System& s = begin("plain DPD between walls that move", two_plates(5, 4));
+    s.parameters.liquid.attraction = 18.75;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.boundaries.lower_velocity = {1, -0.5};
+    s.parameters.boundaries.upper_velocity = {-2, 0};
+    scatter_beads(s, 4, {0, 0, 0}, {5, 5, 4}, everywhere);
+  }
+  {
+    System& s = begin("two-dimensional droplet on a wall", plate(14, 12));
+    s.parameters.dimensions = 2;
+    s.parameters.domain.lower_side[1] = s.parameters.domain.upper_side[1] = Side::reflecting;
+    scatter_beads(s, 0.5, {2, 2, 0}, {12, 12, 8},
+                  [](const Vector3d& p) { return (p - Vector3d(7, p.y(), 2)).norm() < 4; });
+    for (Record& at : s.beads.position) at.y = 7;
+    for (Record& velocity : s.beads.velocity) velocity.y = 0;
+    s.beads.predicted = s.beads.velocity;
+  }
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));
   return systems;
@@ -213,7 +231,7 @@ inline void poison_behind(Beads& beads, BodyBeads& body_beads) {
 /// A wall with a gradient, so that every wall bead is its own.
 inline Plates wall_of(const System& system) {
   Plates wall(system.parameters.domain, system.parameters.wall,
-              system.parameters.liquid.range() + system.parameters.list_skin);
+              system.parameters.liquid.range() + system.parameters.list_skin, system.parameters.dimensions);
   const double width = system.parameters.domain.size().x();
   wall.set_wettability([width](double x, double) { return 150 - 110 * std::clamp(x / width, 0.0, 1.0); },
                        system.curve);

@@ -101,6 +101,12 @@ End body_end(const PairPass& pass, std::uint32_t i) {
   return {velocity_of(pass.bodies.moving[i]), pass.bodies.moving[i].w, body_key(i)};
 }
 End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
+/// As a wall sees the bead.
+End end_at_wall(const PairPass& pass, std::uint32_t i) {
+  End end = liquid_end(pass, i);
+  end.velocity = velocity_of(pass.wall_motion.relative(pass.position[i], pass.predicted[i]));
+  return end;
+}
 
 template <PairForce part, DissipativeWeight weight>
 Vector3d force_between(const MdpdLaw<double>& law, double attraction, const Vector3d& d, const End& i,
@@ -134,7 +140,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
                         block.wall_runs.data() + cell.end_wall_run, at, wall_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
                           sum += force_between<part, weight>(wall_law, pass.wall[other].w, d,
-                                                             liquid_end(pass, bead), wall_end(other));
+                                                             end_at_wall(pass, bead), wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
                         block.body_runs.data() + cell.end_body_run, at, body_law.range(),

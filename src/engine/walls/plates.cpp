@@ -6,16 +6,18 @@
 
 namespace dmf::engine {
 
-Plates::Plates(const Domain& domain, const WallParameters& wall, double range) : domain_(domain) {
-  if (domain.has_wall()) add_plate(wall, domain.lower.z(), -1, range);
-  if (domain.has_top_plate()) add_plate(wall, domain.upper.z(), +1, range);
+Plates::Plates(const Domain& domain, const WallParameters& wall, double range, int dimensions)
+    : domain_(domain) {
+  if (domain.has_wall()) add_plate(wall, domain.lower.z(), -1, range, dimensions);
+  if (domain.has_top_plate()) add_plate(wall, domain.upper.z(), +1, range, dimensions);
 }
 
-void Plates::add_plate(const WallParameters& wall, double plane, int outward, double range) {
+void Plates::add_plate(const WallParameters& wall, double plane, int outward, double range, int dimensions) {
   // Whole unit cells across the domain, so that the lattice closes on itself over a periodic side.
   const Vector3d size = domain_.size();
   const int columns = std::max(1, static_cast<int>(std::lround(size.x() / wall.lattice_constant)));
-  const int rows = std::max(1, static_cast<int>(std::lround(size.y() / wall.lattice_constant)));
+  const bool flat = dimensions == 2;
+  const int rows = flat ? 1 : std::max(1, static_cast<int>(std::lround(size.y() / wall.lattice_constant)));
   const double step_x = size.x() / columns, step_y = size.y() / rows;
   AlignedVector<Record> unsorted;
   unsorted.reserve(static_cast<std::size_t>(columns) * rows * 2 * wall.layers);
@@ -25,10 +27,10 @@ void Plates::add_plate(const WallParameters& wall, double plane, int outward, do
     const double first_offset = layer % 2 == 0 ? 0.25 : 0.75;
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column)
-        for (int basis = 0; basis < 2; ++basis) {
+        for (int basis = 0; basis < (flat ? 1 : 2); ++basis) {
           const double x =
               domain_.lower.x() + (column + (basis == 0 ? first_offset : 1.0 - first_offset)) * step_x;
-          const double y = domain_.lower.y() + (row + (basis == 0 ? 0.25 : 0.75)) * step_y;
+          const double y = domain_.lower.y() + (row + (flat ? 0.5 : basis == 0 ? 0.25 : 0.75)) * step_y;
           unsorted.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.f});
         }
   }

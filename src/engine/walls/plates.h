@@ -16,8 +16,9 @@ namespace dmf::engine {
 /// Wall beads never move and are never looped over: liquid beads near a plane look up the few behind it.
 class Plates {
  public:
-  /// Empty when the domain has no wall. @param range  list range, r_c.
-  Plates(const Domain& domain, const WallParameters& wall, double range);
+  /// Empty when the domain has no wall. @param range  list range, r_c. @param dimensions  with 2, of each
+  /// layer the beads of one row, half-way between the y sides: 2 / a^2 a r_c^2.
+  Plates(const Domain& domain, const WallParameters& wall, double range, int dimensions = 3);
 
   std::size_t size() const { return beads_.size(); }
   /// x, y, z; w: A_lw. Those of the lower plate come first.
@@ -45,7 +46,7 @@ class Plates {
     CellGrid grid;        ///< of its beads, numbered from 0
   };
   /// @param outward  -1: layers go down from the plane, +1: up.
-  void add_plate(const WallParameters& wall, double plane, int outward, double range);
+  void add_plate(const WallParameters& wall, double plane, int outward, double range, int dimensions);
 
   Domain domain_;
   AlignedVector<Record> beads_;
