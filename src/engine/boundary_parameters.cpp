@@ -21,6 +21,8 @@ void check_reflections(const Domain& domain, const BoundaryParameters& boundarie
       const std::string key = fmt::format("boundaries.{}_{}", upper ? "upper" : "lower", "xyz"[axis]);
       if (side == Side::periodic && reflection != Reflection::bounce_back)
         found.push_back(key + ": a reflection on a periodic side, allowed: none, or another side");
+      if (axis < 2 && domain.has_wall() && reflection == Reflection::symmetric)
+        found.push_back(key + ": symmetric beside a wall of beads, allowed: without walls, they end there");
       if (side == Side::wall && reflection == Reflection::symmetric)
         found.push_back(key + ": symmetric on a wall of beads, allowed: a side without beads");
     }

@@ -32,8 +32,9 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   constants_.wall_motion.upper.head<2>() = boundaries.upper_velocity.cast<float>();
   constants_.wall_motion.middle =
       static_cast<float>(0.5 * (parameters.domain.lower.z() + parameters.domain.upper.z()));
+  const Domain domain = Ghosts(parameters).search_domain();
   for (int axis = 0; axis < 3; ++axis) {
-    if (!parameters.domain.periodic(axis)) continue;
+    if (!domain.periodic(axis)) continue;
     constants_.period[axis] = static_cast<float>(parameters.domain.size()[axis]);
     constants_.inverse_period[axis] = 1.f / constants_.period[axis];
   }
@@ -55,6 +56,7 @@ PairPass Forces::pass_over(Beads& beads, const Plates& wall, Microparticles& bod
 }
 
 void Forces::density(Beads& beads, const Plates& wall, Microparticles& bodies, Pairs& pairs) const {
+  const GhostsInPlace ghosts(pairs.ghosts(), beads);
   const PairPass pass = pass_over(beads, wall, bodies);
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
@@ -77,12 +79,15 @@ void Forces::force(Beads& beads, const Plates& wall, Microparticles& bodies, Pai
 void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Plates& wall,
                    Microparticles& bodies, Pairs& pairs) const {
   to.resize(beads.size());
+  const GhostsInPlace ghosts(pairs.ghosts(), beads);
   PairPass pass = pass_over(beads, wall, bodies);
   pass.force = to.data();
   const std::vector<NeighbourBlock>& blocks = pairs.blocks();
   const auto kernel = kernels_.force[static_cast<std::size_t>(part)];
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks.size(); ++b) kernel(pass, blocks[b]);
+  if (pairs.ghosts().needed() && (part == PairForce::all || part == PairForce::random))
+    pairs.ghosts().correct_own_noise(beads, to);
 }
 
 }  // namespace dmf::engine

@@ -15,6 +15,21 @@ constexpr double of_cell = 4;
 constexpr double of_moving_bead = 230;
 constexpr double of_baoab = 16;  ///< more, of a moving bead
 constexpr double of_body_bead = 240;
+constexpr double of_ghost = 100;  ///< its records, whose it is, and its cell
+
+/// Images (walls/ghosts.h) of a bead, in the mean of a full box.
+double ghosts_of_bead(const Parameters& parameters) {
+  const double range = parameters.liquid.range() + parameters.list_skin;
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  double images = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = range / parameters.domain.size()[axis];
+    if (axis == 2 && boundaries.shear_rate != 0) images *= 1 + 2 * share;
+    for (const auto& sides : {boundaries.lower_reflection, boundaries.upper_reflection})
+      if (sides[axis] == Reflection::symmetric) images *= 1 + share;
+  }
+  return images - 1;
+}
 
 }  // namespace
 
@@ -36,7 +51,8 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   need.program = of_program;
   need.wall = wall_beads(parameters) * of_wall_bead;
   need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
-  need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0));
+  need.liquid =
+      moving_beads * (of_moving_bead + (baoab ? of_baoab : 0) + of_ghost * ghosts_of_bead(parameters));
   need.bodies = body_beads * of_body_bead;
   return need;
 }

@@ -125,6 +125,13 @@ struct Simulation::State {
         report.wild, largest_step, parameters.time_step, parameters.microparticles.elastic_modulus));
   }
 
+  /// Images beyond sheared and symmetric sides go along. @param moved  of the present step, as far as the
+  /// beads have moved in it.
+  void advance_images(double moved) {
+    if (!pairs.ghosts().needed()) return;
+    pairs.ghosts().advance((static_cast<double>(step) + moved) * parameters.time_step, step);
+  }
+
   /// After every move: stops a run that jumped, sorts beads anew when cells may miss a pair.
   void keep_pairs(const DriftReport& moved, const BodyDriftReport& bodies_moved = {}) {
     require_sound_drift(moved);
@@ -182,8 +189,9 @@ struct Simulation::State {
   }
 
   void archive(Archive& archive) {
-    // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is.
-    constexpr std::uint64_t current = 4;
+    // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is. 4: no
+    // sheared sides.
+    constexpr std::uint64_t current = 5;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
     if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));
@@ -207,6 +215,7 @@ struct Simulation::State {
     archive(far.gravity);
     archive(far.magnetic);
     require_sound(far);
+    pairs.ghosts().archive(archive);
   }
 };
 
@@ -232,6 +241,7 @@ void Simulation::step() {
   // Voltages have become wettability in set_wettability(), between steps.
   if (s.parameters.integrator == Integrator::groot_warren) {
     const DriftReport moved = drift(s.beads, s.parameters, s.step);
+    s.advance_images(1);
     s.keep_pairs(moved, s.microparticles.drift());
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
@@ -239,9 +249,13 @@ void Simulation::step() {
     finish(s.beads, s.parameters);
     s.microparticles.finish(s.far);
   } else {
-    s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step));
+    const DriftReport half_way = kick_and_half_drift(s.beads, s.parameters, s.step);
+    s.advance_images(0.5);
+    s.keep_pairs(half_way);
     thermostat(s.beads, s.wall, s.microparticles, s.pairs, s.forces, s.parameters);
-    s.keep_pairs(half_drift(s.beads, s.parameters, s.step));
+    const DriftReport moved = half_drift(s.beads, s.parameters, s.step);
+    s.advance_images(1);
+    s.keep_pairs(moved);
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
@@ -258,6 +272,7 @@ void Simulation::step() {
 void Simulation::refresh() {
   State& s = *state_;
   omp_set_num_threads(s.threads);
+  s.advance_images(0);
   s.find_pairs();
   s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
   s.look();
@@ -323,7 +338,7 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
     snapshot->microparticles.push_back(s.observed(particle));
   Virial virial;
   if (request.virial) {
-    virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
+    virial = virial_of(s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.parameters);
     snapshot->virial = virial.total;
   }
   if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles);
@@ -348,10 +363,11 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
 std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
   State& s = *state_;
   const BoundaryParameters& boundaries = s.parameters.boundaries;
-  if (s.parameters.dimensions == 2 || boundaries.moving() || boundaries.shear_rate != 0)
+  if (s.parameters.dimensions == 2 || boundaries.moving() || s.pairs.ghosts().needed())
     throw InvalidInput(
-        "microparticle: with dimensions: 2, moving sides or a shear rate, allowed: in a box at rest of three "
-        "dimensions");
+        "microparticle: with dimensions: 2, sides that move or are symmetric, or a shear rate, allowed: in a "
+        "box "
+        "of three dimensions without");
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
                  static_cast<double>(s.microparticles.beads().size() + told));
@@ -397,6 +413,7 @@ void Simulation::load_state(const std::string& bytes) {
   omp_set_num_threads(s.threads);
   try {
     loaded->pairs.restore(loaded->beads, loaded->wall);
+    loaded->advance_images(0);
     loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
   } catch (const std::length_error& crowd) {
     throw InvalidInput(fmt::format("saved state: {}", crowd.what()));
