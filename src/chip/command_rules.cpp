@@ -58,8 +58,8 @@ class Rules {
   }
 
   void operator()(const SetWettability& command) {
-    if (engine::wall_coefficients(scene_.parameters))
-      note("pairs.liquid.wall sets what all of the wall attracts with, allowed: a scene without it");
+    if (engine::fixed_wall_attraction(scene_.parameters))
+      note("contact angles on a wall with wall.attraction or pairs.liquid.wall, allowed: on a wall without");
     if (command.positions.empty()) note("positions: none given, allowed: one or more");
     check_lengths("positions", command.positions.size(), "contact angles", command.contact_angles_deg.size());
     const std::size_t longest = std::max(command.positions.size(), command.contact_angles_deg.size());

@@ -63,7 +63,9 @@ void Run::place() {
 }
 
 void Run::show(const Board& next) {
-  if (simulation->parameters().domain.has_wall()) simulation->set_wettability(next.field());
+  const engine::Parameters& parameters = simulation->parameters();
+  if (parameters.domain.has_wall() && !fixed_wall_attraction(parameters))
+    simulation->set_wettability(next.field());
   board = next;
 }
 

@@ -106,8 +106,9 @@ class Digest {
             wall_distance);
   }
   void add(const engine::WallParameters& wall) {
-    const auto& [lattice_constant, layers, top_contact_angle] = wall;
+    const auto& [lattice_constant, layers, top_contact_angle, attraction] = wall;
     (*this)(lattice_constant, layers, top_contact_angle);
+    if (attraction) (*this)(*attraction);
   }
   void add(const engine::LabelGridParameters& solid) {
     const auto& [grid, lattice_constant, contact_angle, attraction] = solid;
@@ -121,6 +122,11 @@ class Digest {
                  particle_adhesion, counts_own_beads, counts_liquid, counted_by_liquid] = model;
     (*this)(contact, elastic_modulus, contact_damping, wall_attraction, liquid_repulsion, particle_adhesion,
             counts_own_beads, counts_liquid, counted_by_liquid);
+  }
+  void add(const engine::BoundaryParameters& boundaries) {
+    const auto& [lower_reflection, upper_reflection, layer_thickness, lower_velocity, upper_velocity,
+                 shear_rate] = boundaries;
+    (*this)(lower_reflection, upper_reflection, layer_thickness, lower_velocity, upper_velocity, shear_rate);
   }
   void add(const engine::Domain& domain) {
     const auto& [lower, upper, lower_side, upper_side] = domain;
@@ -194,9 +200,9 @@ SceneContent content_of(const Scene& scene) {
                sensing, board, layout, program, default_duration, settle_time, droplets, fills,
                microparticle_calibration, microparticles, chains, membranes, body_forces, schedule,
                patterns] = scene;
-  const auto& [liquid, wall, label_grid, microparticle_model, domain, time_step, integrator,
-               integrator_lambda, list_skin, seed, observe_interval, angle_window, max_beads, max_memory,
-               watchdog, mixture, spline] = parameters;
+  const auto& [liquid, wall, label_grid, microparticle_model, domain, boundaries, dimensions, time_step,
+               integrator, integrator_lambda, list_skin, seed, observe_interval, angle_window, max_beads,
+               max_memory, watchdog, mixture, spline] = parameters;
   SceneContent content;
   content["liquid"] = digest(liquid);
   // What a scene does not use is no part of it: its saved runs are those of the same scene before.
@@ -208,6 +214,10 @@ SceneContent content_of(const Scene& scene) {
   if (label_grid.grid) content["label_grid"] = digest(label_grid);
   content["microparticle_model"] = digest(microparticle_model, digest_of_microparticle_curve(scene));
   content["domain"] = digest(domain);
+  // Only where they are not the usual ones: the hashes of older scenes stay.
+  if (const std::uint64_t given = digest(boundaries); given != digest(engine::BoundaryParameters{}))
+    content["boundaries"] = given;
+  if (dimensions != 3) content["dimensions"] = digest(dimensions);
   content["engine"] =
       digest(time_step, integrator, integrator_lambda, list_skin, observe_interval, angle_window);
   content["units"] = digest(units);

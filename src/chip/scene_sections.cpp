@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chip/board_drawing.h"
+#include "chip/boundary_section.h"
 #include "chip/capacitance.h"
 #include "chip/command_reader.h"
 #include "chip/command_rules.h"
@@ -298,6 +299,7 @@ void read_engine(const YamlReader& root, engine::Parameters& parameters,
         static_cast<int>(wall->integer("layers", 0, kMaxPerSide, parameters.wall.layers));
   }
   parameters.domain = read_domain(root, board);
+  read_boundaries(root, parameters);
   parameters.microparticles = read_microparticle_model(root);
   parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
   parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
@@ -353,6 +355,10 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   }
   const Domain& domain = scene.parameters.domain;
   if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
+  if (scene.parameters.wall.attraction)
+    chip->report("", "electrodes on a wall with wall.attraction, allowed: on a wall without");
+  if (scene.parameters.dimensions == 2)
+    chip->report("", "electrodes in a scene of two dimensions, allowed: in one of three");
   read_electrowetting(*chip, scene, scene.electrowetting);
 
   std::optional<double> usual_gap;

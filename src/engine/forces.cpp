@@ -29,9 +29,16 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   rows_ = law_rows(constants_.laws, parameters);
   constants_.bodies.count_liquid = parameters.microparticles.counts_liquid;
   constants_.bodies.counted_by_liquid = parameters.microparticles.counted_by_liquid;
-  constants_.density_normalization = density_normalization(parameters.liquid.repulsion_radius);
+  constants_.density_normalization =
+      density_normalization(parameters.liquid.repulsion_radius, parameters.dimensions);
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  constants_.wall_motion.lower.head<2>() = boundaries.lower_velocity.cast<float>();
+  constants_.wall_motion.upper.head<2>() = boundaries.upper_velocity.cast<float>();
+  constants_.wall_motion.middle =
+      static_cast<float>(0.5 * (parameters.domain.lower.z() + parameters.domain.upper.z()));
+  const Domain domain = Ghosts(parameters).search_domain();
   for (int axis = 0; axis < 3; ++axis) {
-    if (!parameters.domain.periodic(axis)) continue;
+    if (!domain.periodic(axis)) continue;
     constants_.period[axis] = static_cast<float>(parameters.domain.size()[axis]);
     constants_.inverse_period[axis] = 1.f / constants_.period[axis];
   }
@@ -54,6 +61,7 @@ PairPass Forces::pass_over(Beads& beads, const Walls& wall, Microparticles& bodi
 }
 
 void Forces::density(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const {
+  const GhostsInPlace ghosts(pairs.ghosts(), beads);
   const PairPass pass = pass_over(beads, wall, bodies);
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
@@ -76,12 +84,15 @@ void Forces::force(Beads& beads, const Walls& wall, Microparticles& bodies, Pair
 void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall,
                    Microparticles& bodies, Pairs& pairs) const {
   to.resize(beads.size());
+  const GhostsInPlace ghosts(pairs.ghosts(), beads);
   PairPass pass = pass_over(beads, wall, bodies);
   pass.force = to.data();
   const std::vector<NeighbourBlock>& blocks = pairs.blocks();
   const auto kernel = kernels_.force[static_cast<std::size_t>(part)];
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks.size(); ++b) kernel(pass, blocks[b]);
+  if (pairs.ghosts().needed() && (part == PairForce::all || part == PairForce::random))
+    pairs.ghosts().correct_own_noise(beads, to);
 }
 
 }  // namespace dmf::engine

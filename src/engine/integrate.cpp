@@ -3,48 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "engine/noise.h"
 #include "engine/species.h"
+#include "engine/walls/reflection.h"
 
 namespace dmf::engine {
 namespace {
-
-/// The box as the bounce-back sees it: infinitely wide along periodic axes.
-struct Planes {
-  float lower[3], upper[3];
-};
-
-Planes planes_of(const Domain& domain) {
-  Planes planes;
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool open = domain.periodic(axis);
-    planes.lower[axis] =
-        open ? -std::numeric_limits<float>::infinity() : static_cast<float>(domain.lower[axis]);
-    planes.upper[axis] =
-        open ? std::numeric_limits<float>::infinity() : static_cast<float>(domain.upper[axis]);
-  }
-  return planes;
-}
-
-bool outside(const Planes& planes, const float* at) {
-  bool result = false;
-  for (int axis = 0; axis < 3; ++axis)
-    result |= at[axis] < planes.lower[axis] || at[axis] > planes.upper[axis];
-  return result;
-}
-
-/// Fraction of the way from `from` along `way` to the first plane that is crossed.
-float fraction_to_plane(const Planes& planes, const float* from, const float* way) {
-  float fraction = 1.f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float to = from[axis] + way[axis];
-    if (to < planes.lower[axis]) fraction = std::min(fraction, (planes.lower[axis] - from[axis]) / way[axis]);
-    if (to > planes.upper[axis]) fraction = std::min(fraction, (planes.upper[axis] - from[axis]) / way[axis]);
-  }
-  return std::max(fraction, 0.f);
-}
 
 /// How far a bead goes with its velocity and force in a drift.
 struct Drift {
@@ -57,7 +22,7 @@ struct Drift {
 bool bounce_off(const Solid& solid, const Planes& planes, const float* from, const float* way, float* at) {
   const Eigen::Map<const Eigen::Vector3f> start(from), path(way);
   const float free = solid.free_fraction(start, path);
-  if (free >= 1.f || free > fraction_to_plane(planes, from, way)) return false;
+  if (free >= 1.f || free > planes.fraction_to(from, way)) return false;
   Eigen::Map<Eigen::Vector3f>(at, 3) = start + (2.f * free - 1.f) * path;
   return true;
 }
@@ -65,14 +30,13 @@ bool bounce_off(const Solid& solid, const Planes& planes, const float* from, con
 /// Is the straight way there open? A bead that bounced can come to the back of where it was.
 bool reached(const Solid& solid, const Planes& planes, const float* from, const float* at) {
   const Eigen::Map<const Eigen::Vector3f> start(from), end(at);
-  return !solid.contains(end) && solid.free_fraction(start, end - start) >= 1.f && !outside(planes, at);
+  return !solid.contains(end) && solid.free_fraction(start, end - start) >= 1.f && !planes.outside(at);
 }
 
-template <bool with_solid>
-DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift,
-                 const Solid& solid) {
+template <bool with_solid, class Sides>
+DriftReport move_between(const Sides& sides, Beads& beads, const Parameters& parameters, std::uint64_t step,
+                         const Drift& drift, const Solid& solid) {
   const StepKey key = step_key(parameters.seed, step, Stream::pair);
-  const Planes planes = planes_of(parameters.domain);
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
   float largest = 0;
   std::int64_t wild = -1;
@@ -87,20 +51,15 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
     const float way[3] = {drift.travel * kicked[0], drift.travel * kicked[1], drift.travel * kicked[2]};
     float at[3] = {p.x + way[0], p.y + way[1], p.z + way[2]};
     const float from[3] = {p.x, p.y, p.z};
-    if (with_solid && bounce_off(solid, planes, from, way, at)) {
+    if (with_solid && bounce_off(solid, sides.planes(), from, way, at)) {
       for (int axis = 0; axis < 3; ++axis) {
         kicked[axis] = -kicked[axis];
         seen[axis] = -seen[axis];
       }
-    } else if (outside(planes, at)) {
-      const float travelled = 2.f * fraction_to_plane(planes, from, way) - 1.f;
-      for (int axis = 0; axis < 3; ++axis) {
-        at[axis] = std::clamp(from[axis] + way[axis] * travelled, planes.lower[axis], planes.upper[axis]);
-        kicked[axis] = -kicked[axis];
-        seen[axis] = -seen[axis];
-      }
+    } else if (sides.concerns(at)) {
+      sides.send_back({beads.id[i], {p.x, p.y, p.z}, way, drift.travel}, at, kicked, seen);
     }
-    if (with_solid && !reached(solid, planes, from, at)) std::copy_n(from, 3, at);
+    if (with_solid && !reached(solid, sides.planes(), from, at)) std::copy_n(from, 3, at);
     const float moved = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
     if (!(moved < largest_step * largest_step)) wild = std::max<std::int64_t>(wild, i);
     const Record& listed = beads.listed[i];
@@ -113,6 +72,13 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
     beads.predicted[i] = {seen[0], seen[1], seen[2], 0.f};
   }
   return {largest, wild};
+}
+
+template <class Sides>
+DriftReport move_around(const Sides& sides, Beads& beads, const Parameters& parameters, std::uint64_t step,
+                        const Drift& drift, const Solid& solid) {
+  return solid.empty() ? move_between<false>(sides, beads, parameters, step, drift, solid)
+                       : move_between<true>(sides, beads, parameters, step, drift, solid);
 }
 
 /// Where the force pass of a mixture looks for a bead's species (species.h).
@@ -129,10 +95,16 @@ void note_species(Beads& beads, const Parameters& parameters) {
   }
 }
 
-DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, const Drift& drift,
+/// @param half  0 for the first or only drift of a step, 1 for the second.
+DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step, int half, const Drift& drift,
                  const Solid& solid) {
-  return solid.empty() ? move<false>(beads, parameters, step, drift, solid)
-                       : move<true>(beads, parameters, step, drift, solid);
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  const DriftReport report =
+      boundaries.usual() && !boundaries.moving()
+          ? move_around(BounceBack(parameters.domain), beads, parameters, step, drift, solid)
+          : move_around(Reflections(parameters, 2 * step + half), beads, parameters, step, drift, solid);
+  note_species(beads, parameters);
+  return report;
 }
 
 }  // namespace
@@ -140,9 +112,7 @@ DriftReport move(Beads& beads, const Parameters& parameters, std::uint64_t step,
 DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
   const float prediction = static_cast<float>(parameters.integrator_lambda - 0.5) * dt;
-  const DriftReport report = move(beads, parameters, step, {0.5f * dt, dt, prediction}, solid);
-  note_species(beads, parameters);
-  return report;
+  return move(beads, parameters, step, 0, {0.5f * dt, dt, prediction}, solid);
 }
 
 void add_gravity(Beads& beads, const Vector3d& gravity) {
@@ -169,16 +139,12 @@ void finish(Beads& beads, const Parameters& parameters) {
 DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,
                                 const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
-  const DriftReport report = move(beads, parameters, step, {dt, 0.5f * dt, 0.f}, solid);
-  note_species(beads, parameters);
-  return report;
+  return move(beads, parameters, step, 0, {dt, 0.5f * dt, 0.f}, solid);
 }
 
 DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid) {
   const float dt = static_cast<float>(parameters.time_step);
-  const DriftReport report = move(beads, parameters, step, {0.f, 0.5f * dt, 0.f}, solid);
-  note_species(beads, parameters);
-  return report;
+  return move(beads, parameters, step, 1, {0.f, 0.5f * dt, 0.f}, solid);
 }
 
 }  // namespace dmf::engine

@@ -19,9 +19,9 @@ constexpr float largest_step = 0.5f;
 /// First half of Groot and Warren's modified velocity-Verlet step (1997, eq. 21): half kick, move, and the
 /// velocity that the forces shall see,
 ///   v' = v + dt/2 f,  r += dt v',  predicted = v + lambda dt f.
-/// A bead that would leave through a side that is not periodic goes back along its path with reversed
-/// velocity (bounce-back: no slip on average); so does one that would enter a solid voxel. Sets the beads'
-/// noise keys for `step`.
+/// A bead that would leave through a side that is not periodic is sent back (walls/reflection.h); one that
+/// would enter a solid voxel goes back along its path with reversed velocity. Sets the beads' noise keys for
+/// `step`.
 DriftReport drift(Beads& beads, const Parameters& parameters, std::uint64_t step, const Solid& solid = {});
 
 /// Adds gravity, r_c / tau^2, to the forces.
@@ -38,7 +38,7 @@ void finish(Beads& beads, const Parameters& parameters);
 ///
 /// So between two steps the velocities are those of the drift, half a kick behind the positions. That is what
 /// carries momentum and energy from place to place: the temperature and stress that it gives are right to
-/// higher order in dt than those of the velocity after a half kick. Bounce-back and noise keys as in drift().
+/// higher order in dt than those of the velocity after a half kick. Reflections and noise keys as in drift().
 DriftReport kick_and_half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,
                                 const Solid& solid = {});
 DriftReport half_drift(Beads& beads, const Parameters& parameters, std::uint64_t step,

@@ -19,6 +19,21 @@ constexpr double of_baoab = 16;   ///< more, of a moving bead
 constexpr double of_species = 2;  ///< more, of a moving bead of a mixture
 constexpr double of_body_bead = 240;
 constexpr double of_bonded_bead = 1000;  ///< of a membrane, while it is placed; of a chain less
+constexpr double of_ghost = 100;         ///< its records, whose it is, and its cell
+
+/// Images (walls/ghosts.h) of a bead, in the mean of a full box.
+double ghosts_of_bead(const Parameters& parameters) {
+  const double range = parameters.liquid.range() + parameters.list_skin;
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  double images = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = range / parameters.domain.size()[axis];
+    if (axis == 2 && boundaries.shear_rate != 0) images *= 1 + 2 * share;
+    for (const auto& sides : {boundaries.lower_reflection, boundaries.upper_reflection})
+      if (sides[axis] == Reflection::symmetric) images *= 1 + share;
+  }
+  return images - 1;
+}
 
 }  // namespace
 
@@ -29,6 +44,7 @@ double wall_beads(const Parameters& parameters) {
   const auto cells_along = [&](int axis) {
     return std::max(1.0, std::round(size[axis] / parameters.wall.lattice_constant));
   };
+  if (parameters.dimensions == 2) return plates * parameters.wall.layers * cells_along(0);
   return plates * 2 * parameters.wall.layers * cells_along(0) * cells_along(1) +
          static_cast<double>(count_solid_beads(parameters));
 }
@@ -46,7 +62,8 @@ MemoryNeed memory_need(const Parameters& parameters, double moving_beads, double
   }
   need.cells = (parameters.domain.size() / edge).array().max(1.0).prod() * of_cell;
   need.liquid = moving_beads * (of_moving_bead + (baoab ? of_baoab : 0) +
-                                (parameters.mixture.liquids.empty() ? 0 : of_species));
+                                (parameters.mixture.liquids.empty() ? 0 : of_species) +
+                                of_ghost * ghosts_of_bead(parameters));
   need.bodies = body_beads * of_body_bead;
   need.bonds = bonded_beads * of_bonded_bead;
   return need;

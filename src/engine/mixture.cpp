@@ -157,6 +157,11 @@ const PairCoefficients* wall_coefficients(const Parameters& parameters) {
   return nullptr;
 }
 
+std::optional<double> fixed_wall_attraction(const Parameters& parameters) {
+  if (const PairCoefficients* pair = wall_coefficients(parameters)) return pair->attraction;
+  return parameters.wall.attraction;
+}
+
 std::uint32_t liquid_named(const Parameters& parameters, const std::string& name) {
   const std::vector<std::string> names = names_of_liquids(parameters);
   const auto found = std::find(names.begin(), names.end(), name);

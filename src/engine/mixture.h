@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,10 @@ double bulk_density(const Parameters& parameters, std::uint32_t liquid);
 
 /// The law of the first liquid with the wall, when the mixture gives one.
 const PairCoefficients* wall_coefficients(const Parameters& parameters);
+
+/// What all of the wall attracts the first liquid with, where that is given in place of contact angles: by
+/// the mixture, or as WallParameters::attraction.
+std::optional<double> fixed_wall_attraction(const Parameters& parameters);
 
 /// The number of the liquid of that name. @throws InvalidInput naming those there are.
 std::uint32_t liquid_named(const Parameters& parameters, const std::string& name);

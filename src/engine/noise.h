@@ -14,10 +14,20 @@ namespace dmf::engine {
 /// | velocity   | thermal velocities of a newly placed bead   | bead id, component                  |
 /// | sensing    | noise of a reading of the capacitance       | channel                             |
 /// | chain      | place and walk of a chain's beads           | chain id, number of the draw        |
+/// | reflection | velocity of a bead that a side sends back   | bead id, number of the side it met  |
+/// | mirror     | zeta_ij with the mirror image of a bead     | both bead ids, symmetric; mirrors   |
 ///
 /// A wall or body pair mixes the liquid bead's key of the pair stream with a fixed key of the other bead.
+/// The steps of the reflection stream are drifts: BAOAB has two a step.
 /// The pair stream costs one hash a bead and step (`bead_key`) plus one hash a pair (`mix` in noise-inl.h).
-enum class Stream : std::uint32_t { pair = 1, velocity = 2, sensing = 3, chain = 10 };
+enum class Stream : std::uint32_t {
+  pair = 1,
+  velocity = 2,
+  sensing = 3,
+  chain = 10,
+  reflection = 11,
+  mirror = 12
+};
 
 /// The two words that make a step's keys: from (seed, step, stream).
 struct StepKey {

@@ -75,9 +75,12 @@ inline MdpdLaw<double> liquid_law(const LiquidParameters& liquid, double time_st
           static_cast<int>(std::lround(2 * liquid.dissipation_exponent))};
 }
 
-/// 15 / (2 pi r_d^3): turns a sum of density_weight into a density (Lan 2.38).
-inline double density_normalization(double repulsion_radius) {
-  return 15.0 / (2.0 * 3.14159265358979323846 * repulsion_radius * repulsion_radius * repulsion_radius);
+/// Turns a sum of density_weight into a density: 15 / (2 pi r_d^3) in space (Lan 2.38), 6 / (pi r_d^2) in a
+/// plane.
+inline double density_normalization(double repulsion_radius, int dimensions = 3) {
+  constexpr double pi = 3.14159265358979323846;
+  if (dimensions == 2) return 6.0 / (pi * repulsion_radius * repulsion_radius);
+  return 15.0 / (2.0 * pi * repulsion_radius * repulsion_radius * repulsion_radius);
 }
 
 }  // namespace dmf::engine

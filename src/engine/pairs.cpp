@@ -59,7 +59,8 @@ struct PatchedBody {
 };
 
 Pairs::Pairs(const Parameters& parameters)
-    : domain_(parameters.domain),
+    : ghosts_(parameters),
+      domain_(ghosts_.search_domain()),
       range_(parameters.liquid.range() + parameters.list_skin),
       squared_half_skin_(static_cast<float>(0.25 * parameters.list_skin * parameters.list_skin)) {}
 
@@ -81,6 +82,7 @@ void Pairs::lay_grid(const AlignedVector<Record>& positions) {
 
 void Pairs::rebuild(Beads& beads, const Walls& wall) {
   const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(beads.size());
+  ghosts_.wrap(beads);
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     Record& p = beads.position[i];
@@ -92,6 +94,7 @@ void Pairs::rebuild(Beads& beads, const Walls& wall) {
   grid_.sort(beads.position.data(), beads.size(), order_);
   beads.reorder(order_);
   beads.listed = beads.position;
+  ghosts_.list(beads.listed, range_);
   find_neighbourhoods(beads.listed, wall);
   ++builds_;
 }
@@ -102,6 +105,7 @@ void Pairs::restore(const Beads& beads, const Walls& wall) {
   grid_.sort(beads.listed.data(), beads.size(), order_);
   if (!std::is_sorted(order_.begin(), order_.end()))
     throw InvalidInput("saved state: its beads are sorted into other cells than these parameters make");
+  ghosts_.list(beads.listed, range_, true);
   find_neighbourhoods(beads.listed, wall);
 }
 
@@ -158,6 +162,7 @@ void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedV
   };
   cell.first_run = static_cast<std::uint32_t>(block.runs.size());
   append_runs(grid_, domain_, around.lower, around.upper, block.runs);
+  ghosts_.append_runs(around.lower, around.upper, static_cast<std::uint32_t>(listed.size()), block.runs);
   cell.end_run = static_cast<std::uint32_t>(block.runs.size());
   note_new(block.runs, cell.first_run, block.slots);
   cell.first_wall_run = static_cast<std::uint32_t>(block.wall_runs.size());

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "engine/cell_grid.h"
 #include "engine/neighbours.h"
 #include "engine/parameters.h"
+#include "engine/walls/ghosts.h"
 #include "engine/walls/walls.h"
 
 namespace dmf::engine {
@@ -31,7 +33,9 @@ class Pairs {
   void invalidate() { stale_ = true; }
   /// @param largest_displacement_squared  since the last sort, r_c^2.
   bool stale(float largest_displacement_squared) const {
-    return stale_ || largest_displacement_squared > squared_half_skin_;
+    if (stale_ || largest_displacement_squared > squared_half_skin_) return true;
+    if (ghosts_.moved() == 0) return false;
+    return std::sqrt(largest_displacement_squared) + 0.5f * ghosts_.moved() > std::sqrt(squared_half_skin_);
   }
   /// Wraps beads into periodic sides and sorts them by cell. The order is a function of positions and
   /// previous order only. @throws std::length_error when more beads crowd around a cell than slots can
@@ -57,6 +61,8 @@ class Pairs {
   /// Blocks of beads of microparticles, none of two: their cells are patches, their runs liquid and wall.
   const std::vector<NeighbourBlock>& body_blocks() const { return body_blocks_; }
   const std::vector<SmoothNeighbours>& smooth_neighbours() const { return smooth_neighbours_; }
+  Ghosts& ghosts() { return ghosts_; }
+  const Ghosts& ghosts() const { return ghosts_; }
   std::uint64_t builds() const { return builds_; }
   std::size_t memory_bytes() const;
 
@@ -70,8 +76,9 @@ class Pairs {
   void find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedVector<Record>& listed,
                       const std::vector<PatchedBody>& bodies) const;
 
-  Domain domain_;
-  double range_;  ///< r_c + skin
+  Ghosts ghosts_;
+  Domain domain_;  ///< as ghosts_ want it searched
+  double range_;   ///< r_c + skin
   float squared_half_skin_;
   bool stale_ = true;
   std::uint64_t builds_ = 0;

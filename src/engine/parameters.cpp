@@ -120,6 +120,8 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("wall.layers", parameters.wall.layers, 1, 8, "1 to 8");
   check.within("wall.top_contact_angle", parameters.wall.top_contact_angle, tiny, 180,
                "above 0 up to 180 (degrees), within the calibration");
+  if (parameters.wall.attraction)
+    check.within("wall.attraction", *parameters.wall.attraction, -200, 200, "-200 to 200");
   check_microparticles(parameters.microparticles, check);
   check_domain(parameters.domain, parameters.liquid.range() + parameters.list_skin, check);
   check.within("time_step", parameters.time_step, tiny, 0.1, "above 0 up to 0.1 (tau)");
@@ -130,7 +132,8 @@ std::vector<std::string> violations(const Parameters& parameters) {
   check.within("max_beads", static_cast<double>(parameters.max_beads), 1, 100e6, "1 to 100000000");
   check.within("max_memory", parameters.max_memory, 10, 1e6, "10 to 1000000 (MB)");
   check_watchdog(parameters.watchdog, check);
-  for (const auto& violations : {mixture_violations(parameters), spline_violations(parameters)})
+  for (const auto& violations :
+       {mixture_violations(parameters), spline_violations(parameters), boundary_violations(parameters)})
     found.insert(found.end(), violations.begin(), violations.end());
   // A domain that is out of range is told already.
   if (found.empty()) found = label_grid_violations(parameters);

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/boundary_parameters.h"
 #include "engine/mixture.h"
 #include "engine/spline.h"
 #include "engine/walls/label_grid.h"
@@ -50,14 +52,16 @@ struct WallParameters {
   double lattice_constant = 0.874;  ///< of the fcc(100) layers: 4 / a^3 = 6 beads per r_c^3; [0.5, 1.5]
   int layers = 3;  ///< half a lattice constant apart, the first one on the wall plane; [1, 8]
   double top_contact_angle = 110.0;  ///< that all of a top plate shows, degrees; within the calibration
+  /// A_lw of all wall beads in place of contact angles, such as plain DPD's repulsion a_lw; [-200, 200]
+  std::optional<double> attraction;
 };
 
 /// What closes one side of the box.
 enum class Side {
   periodic,    ///< joined to the opposite side; both must be periodic
-  reflecting,  ///< bounce-back plane without beads: keeps stray beads in the domain
-  wall,        ///< bounce-back plane on the first layer of frozen beads that wet. Only z sides: the lower
-               ///< one, and over it the upper one, a top plate
+  reflecting,  ///< plane without beads that sends beads back: keeps stray ones in the domain
+  wall,        ///< such a plane on the first layer of frozen beads that wet. Only z sides: the lower one, and
+               ///< over it the upper one, a top plate
 };
 
 struct Domain {
@@ -121,6 +125,9 @@ struct Parameters {
   LabelGridParameters label_grid;
   MicroparticleParameters microparticles;
   Domain domain;
+  BoundaryParameters boundaries;
+  /// Of space; 2: all beads stay in the plane half-way between the y sides, and densities are per r_c^2.
+  int dimensions = 3;
   double time_step = 0.01;  ///< Delta t, tau; (0, 0.1]
   Integrator integrator = Integrator::groot_warren;
   double integrator_lambda = 0.55;  ///< of groot_warren; [0.5, 1]. Their 0.65 leaves this liquid 2 % cold

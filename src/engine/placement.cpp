@@ -15,20 +15,38 @@
 namespace dmf::engine {
 namespace {
 
-double fcc_constant(double density) { return std::cbrt(4.0 / density); }
+/// A lattice on which liquid is placed: fcc, or in a plane the centred square.
+struct Lattice {
+  double constant;    ///< a; layers are a/2 apart
+  std::size_t basis;  ///< sites a cell
+  double plane;       ///< y, of the one in a plane
+  bool flat() const { return basis == 2; }
+  Vector3d cell() const { return Vector3d::Constant(constant); }
+};
 
-/// Calls visit(site) for every fcc site with lower <= site < upper; the lattice has a site a quarter cell
-/// inside lower.
+Lattice lattice_of(const Parameters& parameters, std::uint32_t species) {
+  const double density = initial_density(parameters, species);
+  const double middle = 0.5 * (parameters.domain.lower.y() + parameters.domain.upper.y());
+  return parameters.dimensions == 2 ? Lattice{std::sqrt(2.0 / density), 2, middle}
+                                    : Lattice{std::cbrt(4.0 / density), 4, 0};
+}
+
+/// Calls visit(site) for every site with lower <= site < upper; the lattice has a site a quarter cell inside
+/// lower.
 template <class Visit>
-void for_each_site(const Vector3d& lower, const Vector3d& upper, const Vector3d& cell, Visit visit) {
-  static const double basis[4][3] = {{.25, .25, .25}, {.75, .75, .25}, {.75, .25, .75}, {.25, .75, .75}};
+void for_each_site(const Vector3d& lower, const Vector3d& upper, const Lattice& lattice, const Vector3d& cell,
+                   Visit visit) {
+  static const double fcc[4][3] = {{.25, .25, .25}, {.75, .75, .25}, {.75, .25, .75}, {.25, .75, .75}};
+  static const double square[2][3] = {{.25, 0, .25}, {.75, 0, .75}};
+  const double(*basis)[3] = lattice.flat() ? square : fcc;
   const Eigen::Vector3i count = ((upper - lower).array() / cell.array()).ceil().cast<int>();
   for (int k = 0; k < count.z(); ++k)
-    for (int j = 0; j < count.y(); ++j)
+    for (int j = 0; j < (lattice.flat() ? 1 : count.y()); ++j)
       for (int i = 0; i < count.x(); ++i)
-        for (const double* offset : basis) {
-          const Vector3d site = lower + Vector3d((i + offset[0]) * cell.x(), (j + offset[1]) * cell.y(),
-                                                 (k + offset[2]) * cell.z());
+        for (std::size_t b = 0; b < lattice.basis; ++b) {
+          Vector3d site = lower + Vector3d((i + basis[b][0]) * cell.x(), (j + basis[b][1]) * cell.y(),
+                                           (k + basis[b][2]) * cell.z());
+          if (lattice.flat()) site.y() = lattice.plane;
           if ((site.array() < upper.array()).all()) visit(site);
         }
 }
@@ -58,10 +76,11 @@ std::vector<std::uint32_t> take_ids(const Beads& beads, std::size_t count, std::
   return ids;
 }
 
-/// Beads of the initial density in a sphere.
+/// Beads of the initial density in a sphere, or in a plane in a disc.
 double sphere_beads(const DropletPlacement& placement, const Parameters& parameters) {
-  const double radius = placement.radius;
-  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * initial_density(parameters, placement.species);
+  const double radius = placement.radius, density = initial_density(parameters, placement.species);
+  if (parameters.dimensions == 2) return 3.14159265 * radius * radius * density;
+  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * density;
 }
 
 void require_within(const Domain& domain, int axis, double low, double high, double cutoff_radius) {
@@ -75,24 +94,26 @@ void require_within(const Domain& domain, int axis, double low, double high, dou
 /// The sphere, cut by the wall.
 std::vector<Vector3d> sphere_sites(const DropletPlacement& placement, const Parameters& parameters) {
   const Domain& domain = parameters.domain;
-  const Vector3d& center = placement.center;
+  const Lattice lattice = lattice_of(parameters, placement.species);
+  Vector3d center = placement.center;
+  if (lattice.flat()) center.y() = lattice.plane;
   const double radius = placement.radius;
   // A sphere whose centre lies below the wall plane is a flat cap, as wide as its base.
   const double sunk = domain.has_wall() ? std::clamp(domain.lower.z() - center.z(), 0.0, radius) : 0.0;
   const double wide = std::sqrt(radius * radius - sunk * sunk);
-  const Vector3d reach(wide, wide, radius);
+  const Vector3d reach(wide, lattice.flat() ? 0 : wide, radius);
   for (int axis = 0; axis < 3; ++axis) {
     const bool cut_by_wall = axis == 2 && domain.has_wall();
     require_within(domain, axis, cut_by_wall ? domain.lower.z() : center[axis] - reach[axis],
                    center[axis] + reach[axis], parameters.liquid.cutoff_radius);
   }
-  const double a = fcc_constant(initial_density(parameters, placement.species));
+  const double a = lattice.constant;
   const double unbounded = std::numeric_limits<double>::infinity();
   const double lowest = domain.has_wall() ? domain.lower.z() + 0.5 * a : -unbounded;
   const double highest = domain.has_top_plate() ? domain.upper.z() - 0.5 * a : unbounded;
   std::vector<Vector3d> sites;
   for_each_site(
-      center - Vector3d::Constant(radius), center + Vector3d::Constant(radius), Vector3d::Constant(a),
+      center - Vector3d::Constant(radius), center + Vector3d::Constant(radius), lattice, lattice.cell(),
       [&](const Vector3d& site) {
         if ((site - center).squaredNorm() < radius * radius && site.z() >= lowest && site.z() <= highest)
           sites.push_back(site);
@@ -108,7 +129,8 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   for (int axis = 0; axis < 2; ++axis)
     require_within(domain, axis, placement.center[axis] - footprint, placement.center[axis] + footprint,
                    parameters.liquid.cutoff_radius);
-  const double a = fcc_constant(initial_density(parameters, placement.species));
+  const Lattice lattice = lattice_of(parameters, placement.species);
+  const double a = lattice.constant;
   const auto count = static_cast<std::size_t>(std::lround(sphere_beads(placement, parameters)));
   const double between = domain.size().z() - a;  // of the lowest and the highest layer
   const double layers = std::floor(between / (0.5 * a)) + 1;
@@ -117,7 +139,7 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   const Vector3d lower(placement.center.x() - wide, placement.center.y() - wide, from);
   const Vector3d upper(placement.center.x() + wide, placement.center.y() + wide, from + 0.5 * a * layers);
   std::vector<Vector3d> sites;
-  for_each_site(lower, upper, Vector3d::Constant(a), [&](const Vector3d& site) { sites.push_back(site); });
+  for_each_site(lower, upper, lattice, lattice.cell(), [&](const Vector3d& site) { sites.push_back(site); });
   const auto from_axis = [&](const Vector3d& site) {
     return (site - placement.center).head<2>().squaredNorm();
   };
@@ -171,6 +193,7 @@ double liquid_height(const Parameters& parameters) {
 
 double pancake_radius(const DropletPlacement& placement, const Parameters& parameters) {
   const double height = liquid_height(parameters);
+  if (parameters.dimensions == 2) return 0.0;
   if (!parameters.domain.has_top_plate() || 2.0 * placement.radius <= height) return 0.0;
   return std::sqrt(4.0 / 3.0 * std::pow(placement.radius, 3) / height);
 }
@@ -206,16 +229,19 @@ std::vector<Vector3d> slab_sites(const FillPlacement& placement, const Parameter
   if (!parameters.domain.contains(lower) || !parameters.domain.contains(upper) ||
       !(lower.array() < upper.array()).all())
     throw InvalidInput("slab: allowed: lower below upper, both in the domain");
-  require_memory(parameters, (upper - lower).prod() * initial_density(parameters, placement.species), 0);
-  const double a = fcc_constant(initial_density(parameters, placement.species));
-  // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
+  const Lattice lattice = lattice_of(parameters, placement.species);
+  const double a = lattice.constant;
   const Vector3d size = upper - lower;
+  const double volume = lattice.flat() ? size.x() * size.z() : size.prod();
+  require_memory(parameters, volume * initial_density(parameters, placement.species), 0);
+  // Whole cells across the slab, so that periodic neighbours stand at lattice distance.
   Vector3d cells = (size / a).array().round().max(1.0);
   // What rounding in x and y has taken off or put on too much, the layers in z make good.
-  cells.z() = std::max(1.0, std::round(size.prod() / (a * a * a) / (cells.x() * cells.y())));
+  if (!lattice.flat())
+    cells.z() = std::max(1.0, std::round(size.prod() / (a * a * a) / (cells.x() * cells.y())));
   std::vector<Vector3d> sites;
   const Solid solid(parameters);
-  for_each_site(lower, upper, size.cwiseQuotient(cells), [&](const Vector3d& site) {
+  for_each_site(lower, upper, lattice, size.cwiseQuotient(cells), [&](const Vector3d& site) {
     if (!solid.contains(site.cast<float>())) sites.push_back(site);
   });
   if (sites.empty())
@@ -248,7 +274,7 @@ std::vector<Vector3d> free_sites(const FillPlacement& placement, const Beads& be
                                  const Microparticles& bodies, const Parameters& parameters) {
   require_species(placement.species, parameters);
   // Nearer than half a lattice constant, less than the next layer of a slab that begins here.
-  const double distance = 0.49 * fcc_constant(initial_density(parameters, placement.species));
+  const double distance = 0.49 * lattice_of(parameters, placement.species).constant;
   std::vector<Vector3d> sites;
   const BeadsAround there(beads, parameters.domain);
   for (const Vector3d& site : slab_sites(placement, parameters))
@@ -269,6 +295,7 @@ std::vector<std::uint32_t> place_beads(Beads& beads, const std::vector<Vector3d>
   for (const std::uint32_t id : ids) {
     velocities.emplace_back(gaussian_noise(key, id, 0), gaussian_noise(key, id, 1),
                             gaussian_noise(key, id, 2));
+    if (parameters.dimensions == 2) velocities.back().y() = 0;
     mean += velocities.back() / static_cast<double>(sites.size());
   }
   beads.reserve_more(sites.size());

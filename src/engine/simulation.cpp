@@ -18,6 +18,7 @@
 #include "engine/observe/carriage.h"
 #include "engine/observe/droplet_tracker.h"
 #include "engine/observe/state_hash.h"
+#include "engine/observe/temperature.h"
 #include "engine/observe/virial.h"
 #include "engine/observe/watchdog.h"
 #include "engine/observe/wetted_area.h"
@@ -68,10 +69,15 @@ struct Simulation::State {
   std::uint32_t next_bead_id = 0;
   std::string fault;
 
+  /// Of a liquid that flows, or is hot enough to be one, what moves relative to the beads around it.
   double temperature() const {
-    double twice_energy = 0;
-    for (const Record& v : beads.velocity) twice_energy += velocity_of(v).squaredNorm();
-    return beads.size() > 0 ? twice_energy / (3.0 * static_cast<double>(beads.size())) : 0.0;
+    const double kinetic = kinetic_temperature(beads, parameters.dimensions);
+    const bool driven =
+        !far.gravity.isZero(0) || parameters.boundaries.moving() || parameters.boundaries.shear_rate != 0;
+    if (!driven && kinetic <= parameters.watchdog.highest_temperature * parameters.liquid.temperature)
+      return kinetic;
+    const double local = local_temperature(beads, pairs.blocks(), parameters.dimensions);
+    return local > 0 ? local : kinetic;
   }
 
   /// What a force from afar may do: what starts from rest in every step anew moves by a dt^2, at most 0.001
@@ -86,6 +92,9 @@ struct Simulation::State {
                                        key, value.x(), value.y(), value.z(), allowed, unit));
     };
     check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
+    if (parameters.dimensions == 2 && forces.gravity.y() != 0)
+      throw InvalidInput(
+          fmt::format("body_forces.gravity: {} along y, allowed: 0 with dimensions: 2", forces.gravity.y()));
     double lightest = std::numeric_limits<double>::infinity();
     for (const Microparticle& particle : microparticles.all())
       if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
@@ -125,6 +134,13 @@ struct Simulation::State {
         "microparticle {} moves more than {} r_c a step, or to no number; look at time_step ({}), "
         "elastic_modulus ({}), its mass and the forces on it",
         report.wild, largest_step, parameters.time_step, parameters.microparticles.elastic_modulus));
+  }
+
+  /// Images beyond sheared and symmetric sides go along. @param moved  of the present step, as far as the
+  /// beads have moved in it.
+  void advance_images(double moved) {
+    if (!pairs.ghosts().needed()) return;
+    pairs.ghosts().advance((static_cast<double>(step) + moved) * parameters.time_step, step);
   }
 
   /// After every move: stops a run that jumped, sorts beads anew when cells may miss a pair.
@@ -167,7 +183,7 @@ struct Simulation::State {
   }
 
   void require_sound() {
-    const std::string found = find_fault(parameters, beads, microparticles, tracker, carriage);
+    const std::string found = find_fault(parameters, beads, temperature(), microparticles, tracker, carriage);
     if (!found.empty()) stop(found);
   }
 
@@ -199,7 +215,7 @@ struct Simulation::State {
 
   void archive(Archive& archive) {
     // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is. 4: one
-    // liquid, no bonds.
+    // liquid, no bonds, no sheared sides.
     constexpr std::uint64_t current = 5;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
@@ -226,17 +242,14 @@ struct Simulation::State {
     archive(far.magnetic);
     require_sound(far);
     bonds.archive(archive);
+    pairs.ghosts().archive(archive);
   }
 };
 
 Simulation::Simulation(const Parameters& parameters, ContactAngleCurve curve, const Execution& execution)
     : state_(std::make_unique<State>(parameters, std::move(curve), execution)) {
-  if (const PairCoefficients* on_wall = wall_coefficients(parameters)) {
-    const auto attraction = static_cast<float>(on_wall->attraction);
-    state_->wall.set_attraction(std::vector<float>(state_->wall.size(), attraction));
-    return;
-  }
   state_->wall.set_fixed_wettability(parameters, state_->curve);
+  if (fixed_wall_attraction(parameters)) return;
   const double angle = state_->curve.max_angle();
   set_wettability([angle](double, double) { return angle; });
 }
@@ -251,6 +264,7 @@ void Simulation::step() {
   // Voltages have become wettability in set_wettability(), between steps.
   if (s.parameters.integrator == Integrator::groot_warren) {
     const DriftReport moved = drift(s.beads, s.parameters, s.step, s.wall.solid());
+    s.advance_images(1);
     s.keep_pairs(moved, s.microparticles.drift());
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(s.beads, s.wall, s.microparticles, s.pairs);
@@ -259,9 +273,13 @@ void Simulation::step() {
     finish(s.beads, s.parameters);
     s.microparticles.finish(s.far);
   } else {
-    s.keep_pairs(kick_and_half_drift(s.beads, s.parameters, s.step, s.wall.solid()));
+    const DriftReport half_way = kick_and_half_drift(s.beads, s.parameters, s.step, s.wall.solid());
+    s.advance_images(0.5);
+    s.keep_pairs(half_way);
     thermostat(s.beads, s.wall, s.microparticles, s.pairs, s.forces, s.parameters);
-    s.keep_pairs(half_drift(s.beads, s.parameters, s.step, s.wall.solid()));
+    const DriftReport moved = half_drift(s.beads, s.parameters, s.step, s.wall.solid());
+    s.advance_images(1);
+    s.keep_pairs(moved);
     s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
     s.forces.force(PairForce::conservative, s.beads.force, s.beads, s.wall, s.microparticles, s.pairs);
     if (!s.far.gravity.isZero()) add_gravity(s.beads, s.far.gravity);
@@ -279,13 +297,17 @@ void Simulation::step() {
 void Simulation::refresh() {
   State& s = *state_;
   omp_set_num_threads(s.threads);
+  s.advance_images(0);
   s.find_pairs();
   s.forces.density(s.beads, s.wall, s.microparticles, s.pairs);
   s.look();
 }
 
 void Simulation::set_wettability(const ContactAngleField& field) {
-  if (!wall_coefficients(state_->parameters)) state_->wall.set_wettability(field, state_->curve);
+  if (const auto given = fixed_wall_attraction(state_->parameters))
+    throw InvalidInput(fmt::format(
+        "wettability: a contact angle, allowed: none on a wall whose attraction is given ({})", *given));
+  state_->wall.set_wettability(field, state_->curve);
 }
 
 std::size_t Simulation::add_droplet(const DropletPlacement& placement) {
@@ -334,7 +356,15 @@ std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) 
   return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
 }
 
+void Simulation::require_bonds_allowed() const {
+  const State& s = *state_;
+  if (s.parameters.dimensions == 2 || s.pairs.ghosts().needed())
+    throw InvalidInput(
+        "bonds: with dimensions: 2, symmetric sides or a shear rate, allowed: in three dimensions without");
+}
+
 std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
+  require_bonds_allowed();
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
   s.require_room_for_bonded(placement.points.empty() ? 1.0 * placement.count * placement.beads : 0.0);
@@ -354,6 +384,7 @@ std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
 }
 
 std::uint32_t Simulation::add_membrane(const MembranePlacement& placement) {
+  require_bonds_allowed();
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
   const std::uint32_t id = s.bonds.bind_membrane(placement, take(placement.mesh->vertices));
@@ -401,11 +432,12 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   snapshot->membranes = s.bonds.observe_membranes(s.beads);
   Virial virial;
   if (request.virial) {
-    virial = virial_of(s.beads, s.pairs.blocks(), s.parameters);
+    virial = virial_of(s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.parameters);
     snapshot->virial = virial.total;
   }
   if (request.stress)
-    snapshot->stress = stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.parameters);
+    snapshot->stress =
+        stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.parameters);
   if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles, s.bonds);
   if (request.wetted && s.parameters.domain.has_wall())
     snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);
@@ -428,6 +460,11 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
 
 std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
   State& s = *state_;
+  const BoundaryParameters& boundaries = s.parameters.boundaries;
+  if (s.parameters.dimensions == 2 || boundaries.moving() || s.pairs.ghosts().needed())
+    throw InvalidInput(
+        "microparticle: with dimensions: 2, sides that move or are symmetric, or a shear rate, allowed: in "
+        "three dimensions without");
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
                  static_cast<double>(s.microparticles.beads().size() + told),
@@ -475,6 +512,7 @@ void Simulation::load_state(const std::string& bytes) {
   omp_set_num_threads(s.threads);
   try {
     loaded->pairs.restore(loaded->beads, loaded->wall);
+    loaded->advance_images(0);
     loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);
     loaded->bonds.find(loaded->beads);
   } catch (const std::length_error& crowd) {

@@ -46,9 +46,9 @@ class Simulation {
   /// One time step. @throws Instability.
   void step();
 
-  /// Sets what contact angle the wall shows where, from the next step on. Where the mixture gives a law of
-  /// its first liquid with the wall, the wall shows that instead, whatever is set here.
-  /// @throws InvalidInput, unchanged, when an angle is outside the curve's range or not finite.
+  /// Sets what contact angle the wall shows where, from the next step on.
+  /// @throws InvalidInput, unchanged, when an angle is outside the curve's range or not finite, or the wall's
+  /// attraction is given instead (fixed_wall_attraction()).
   void set_wettability(const ContactAngleField& field);
 
   /// Places a droplet at rest: beads on a lattice of the initial density, velocities drawn at k_BT, no net
@@ -84,8 +84,9 @@ class Simulation {
 
   /// Places a microparticle at rest. @returns its id.
   /// @throws InvalidInput, unchanged, when a number is out of range (with the range, or the number that would
-  /// work), its beads could not keep the liquid out, the contact would be too stiff for time_step, or it
-  /// reaches through the wall, out of the domain, into liquid or into another microparticle.
+  /// work), the liquid is two-dimensional, sheared or between moving sides, its beads could not keep the
+  /// liquid out, the contact would be too stiff for time_step, or it reaches through the wall, out of the
+  /// domain, into liquid or into another microparticle.
   std::uint32_t add_microparticle(const MicroparticlePlacement& placement);
 
   /// Takes a microparticle out. @throws InvalidInput when there is none of that id.
@@ -121,6 +122,7 @@ class Simulation {
  private:
   std::size_t place(const std::vector<Vector3d>& sites, std::uint32_t species);
   std::vector<std::uint32_t> take(const std::vector<Vector3d>& sites);
+  void require_bonds_allowed() const;
   void refresh();
 
   struct State;

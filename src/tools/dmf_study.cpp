@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
       {"dpd_liquid", study_dpd_liquid},
       {"equation_of_state", study_equation_of_state},
       {"interfacial_tension", study_interfacial_tension},
+      {"poiseuille", study_poiseuille},
       {"crossing", study_crossing},
       {"time_step", study_time_step},
       {"protocols", study_protocols},
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
       "  dpd_liquid       plain DPD: viscosity, diffusivity, Schmidt number against kinetic theory\n"
       "  equation_of_state  pressure against density, with a van der Waals fit\n"
       "  interfacial_tension  two liquids that don't mix, against Chen's value and Groot and Warren's fit\n"
+      "  poiseuille       plain DPD in a channel, 3D and 2D, against Lan's and the parabola\n"
       "  crossing         a droplet on a wettability gradient, time against Lan's\n"
       "  time_step        every observable against the time step, both integrators; cost of a tau\n"
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"

@@ -97,6 +97,8 @@ void study_equation_of_state(
     const StudyOptions& options);  ///< pressure against density, with a van der Waals fit (Liu 3.3.2)
 /// Two liquids that don't mix: tension against Chen's value and Groot and Warren's fit.
 void study_interfacial_tension(const StudyOptions& options);
+void study_poiseuille(
+    const StudyOptions& options);  ///< plain DPD between walls, driven by a body force (Lan 2.3)
 void study_crossing(
     const StudyOptions& options);  ///< a droplet on a wettability gradient: time against Lan's
 void study_time_step(

@@ -271,6 +271,24 @@ inline std::vector<System> all_systems() {
     scatter_beads(s, 4, s.parameters.domain.lower, s.parameters.domain.upper, everywhere);
     mix(s);
   }
+  {
+    System& s = begin("plain DPD between walls that move", two_plates(5, 4));
+    s.parameters.liquid.attraction = 18.75;
+    s.parameters.liquid.repulsion = 0;
+    s.parameters.boundaries.lower_velocity = {1, -0.5};
+    s.parameters.boundaries.upper_velocity = {-2, 0};
+    scatter_beads(s, 4, {0, 0, 0}, {5, 5, 4}, everywhere);
+  }
+  {
+    System& s = begin("two-dimensional droplet on a wall", plate(14, 12));
+    s.parameters.dimensions = 2;
+    s.parameters.domain.lower_side[1] = s.parameters.domain.upper_side[1] = Side::reflecting;
+    scatter_beads(s, 0.5, {2, 2, 0}, {12, 12, 8},
+                  [](const Vector3d& p) { return (p - Vector3d(7, p.y(), 2)).norm() < 4; });
+    for (Record& at : s.beads.position) at.y = 7;
+    for (Record& velocity : s.beads.velocity) velocity.y = 0;
+    s.beads.predicted = s.beads.velocity;
+  }
   add_bead(begin("one bead", periodic_box(10)), {1, 2, 3});
   begin("no bead", periodic_box(10));
   return systems;

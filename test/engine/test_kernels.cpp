@@ -56,18 +56,27 @@ struct Ends {
       liquid.push_back(
           {beads.position[i], {v.x, v.y, v.z}, 0, bits(beads.position[i].w), beads.species_of(i)});
     }
-    for (std::uint32_t k = 0; k < sorted.wall.size(); ++k)
-      wall.push_back({sorted.wall.beads()[k], Vector3d::Zero(), 0, HWY_NAMESPACE::wall_key(k)});
+    const BoundaryParameters& boundaries = system.parameters.boundaries;
+    for (std::uint32_t k = 0; k < sorted.wall.size(); ++k) {
+      const Record& at = sorted.wall.beads()[k];
+      const bool lower = at.z <= domain.lower.z();
+      const Eigen::Vector2d& along = lower ? boundaries.lower_velocity : boundaries.upper_velocity;
+      wall.push_back({at, {along.x(), along.y(), 0}, 0, HWY_NAMESPACE::wall_key(k)});
+    }
     for (std::uint32_t k = 0; k < body_beads.size(); ++k) {
       const Record& v = body_beads.moving[k];
       bodies.push_back({body_beads.position[k], {v.x, v.y, v.z}, 0, HWY_NAMESPACE::body_key(k)});
     }
     const double r_d = system.parameters.liquid.repulsion_radius;
+    const double pi = std::acos(-1);
+    // Of weights whose integrals over a disc or a sphere are 1.
+    const double normalization =
+        system.parameters.dimensions == 2 ? 6 / (pi * r_d * r_d) : 15 / (2 * pi * r_d * r_d * r_d);
     const auto count = [&](End& i, const std::vector<End>& others) {
       for (const End& j : others)
         if (&i != &j)
-          i.density += density_normalization(r_d) *
-                       HWY_NAMESPACE::density_weight(apart(domain, i.at, j.at).norm(), 1 / r_d);
+          i.density +=
+              normalization * HWY_NAMESPACE::density_weight(apart(domain, i.at, j.at).norm(), 1 / r_d);
     };
     for (End& i : liquid) {
       count(i, liquid);
@@ -80,7 +89,7 @@ struct Ends {
       for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
         End& i = bodies[particle.first_bead + k];
         count(i, own);
-        i.density -= density_normalization(r_d);  // itself, at distance 0
+        i.density -= normalization;  // itself, at distance 0
         count(i, liquid);
       }
     }

@@ -16,7 +16,7 @@ std::vector<SlabStress> profile_of(System& system, const StressSlabs& slabs) {
   pairs.rebuild(system.beads, wall);
   Microparticles none(system.parameters);
   Forces(system.parameters, "auto").density(system.beads, wall, none, pairs);
-  return stress_profile(slabs, system.beads, pairs.blocks(), system.parameters);
+  return stress_profile(slabs, system.beads, pairs.blocks(), pairs.ghosts(), system.parameters);
 }
 
 /// Two resting beads 0.9 r_c apart: too far for the repulsion, so that the force is A (1 - 0.9) = -4.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/observe/temperature.h"
 #include "engine/observe/watchdog.h"
 #include "engine/simulation.h"
 #include "refusal.h"
@@ -46,7 +47,7 @@ TEST(Watchdog, StopsALiquidOutsideItsTemperatureBand) {
     Beads beads = system.beads;
     const auto scaled = [scale](float v) { return static_cast<float>(scale) * v; };
     for (Record& v : beads.velocity) v = {scaled(v.x), scaled(v.y), scaled(v.z), 0};
-    return find_fault(system.parameters, beads, sorted.bodies, tracker, {});
+    return find_fault(system.parameters, beads, kinetic_temperature(beads, 3), sorted.bodies, tracker, {});
   };
   // Velocities are uniform in (-1.7, 1.7): a kinetic temperature of 1.7^2 / 3 = 0.96 times scale^2.
   EXPECT_EQ(fault_at(1), "");
@@ -69,7 +70,9 @@ TEST(Watchdog, ForgivesWhatSoFewBeadsFluctuateBy) {
   Sorted sorted(system, "reference");
   const DropletTracker tracker(system.parameters);
   for (Record& v : system.beads.velocity) v = {0.01f, 0, 0, 0};
-  EXPECT_EQ(find_fault(system.parameters, system.beads, sorted.bodies, tracker, {}), "");
+  EXPECT_EQ(find_fault(system.parameters, system.beads, kinetic_temperature(system.beads, 3), sorted.bodies,
+                       tracker, {}),
+            "");
 }
 
 class BeadThroughAWall : public ::testing::TestWithParam<std::tuple<Vector3d, std::string>> {};
@@ -82,11 +85,14 @@ TEST_P(BeadThroughAWall, IsNamedWithItsPlace) {
                 [](const Vector3d& p) { return (p - Vector3d(7, 7, 3)).norm() < 3; });
   Sorted sorted(system, "reference");
   const DropletTracker tracker(system.parameters);
-  ASSERT_EQ(find_fault(parameters, system.beads, sorted.bodies, tracker, {}), "");
+  ASSERT_EQ(
+      find_fault(parameters, system.beads, kinetic_temperature(system.beads, 3), sorted.bodies, tracker, {}),
+      "");
   const auto& [at, said] = GetParam();
   Record& bead = system.beads.position[17];
   bead = {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()), bead.w};
-  const std::string fault = find_fault(parameters, system.beads, sorted.bodies, tracker, {});
+  const std::string fault =
+      find_fault(parameters, system.beads, kinetic_temperature(system.beads, 3), sorted.bodies, tracker, {});
   EXPECT_TRUE(holds(fault, "bead " + std::to_string(system.beads.id[17]) + " of"));
   EXPECT_TRUE(holds(fault, said));
   EXPECT_TRUE(holds(fault, "time_step"));

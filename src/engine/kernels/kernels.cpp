@@ -228,7 +228,7 @@ struct BodyBeads {
   }
 };
 
-/// Wall beads: they rest, and count in no density.
+/// Wall beads: they rest beside the receiver, and count in no density.
 struct WallBeads {
   const PairPass& pass;
   const std::uint32_t* indices;
@@ -391,7 +391,9 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
                                                             block.in_range_count(bead), total);
     if (wall_candidates > 0) {
       const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
-      add_wall_forces<part, weight, model, across_periodic>(pass, wall_law, i, packed, count, total);
+      const Record moving = pass.wall_motion.relative(i.position, i.moving);
+      add_wall_forces<part, weight, model, across_periodic>(
+          pass, wall_law, Receiver{i.position, moving, i.key}, packed, count, total);
     }
     pass.force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
   }

@@ -21,12 +21,25 @@ struct BodyPass {
   bool count_liquid = true, counted_by_liquid = true;
 };
 
+/// How the walls move, r_c / tau. Their beads stay where they are: only their friction feels it.
+struct WallMotion {
+  Eigen::Vector3f lower = Eigen::Vector3f::Zero(), upper = Eigen::Vector3f::Zero();
+  float middle = 0;  ///< z: above it a bead meets the upper wall
+
+  /// A bead's velocity relative to the wall that it is near, with its density.
+  Record relative(const Record& position, const Record& moving) const {
+    const Eigen::Vector3f& wall = position.z > middle ? upper : lower;
+    return {moving.x - wall.x(), moving.y - wall.y(), moving.z - wall.z(), moving.w};
+  }
+};
+
 /// What the two loops over pairs read and write.
 struct PairPass {
   const Record* position;        ///< x, y, z, key
   Record* predicted;             ///< velocities; density pass writes w = rho
   Record* force;                 ///< force pass writes
   const Record* wall = nullptr;  ///< x, y, z, A_lw
+  WallMotion wall_motion;
   BodyPass bodies;
   PairTable laws;
   const LawRow* rows = nullptr;  ///< by number of the liquid; of mixtures

@@ -101,6 +101,12 @@ End body_end(const PairPass& pass, std::uint32_t i) {
   return {velocity_of(pass.bodies.moving[i]), pass.bodies.moving[i].w, body_key(i)};
 }
 End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
+/// As a wall sees the bead.
+End end_at_wall(const PairPass& pass, std::uint32_t i) {
+  End end = liquid_end(pass, i);
+  end.velocity = velocity_of(pass.wall_motion.relative(pass.position[i], pass.predicted[i]));
+  return end;
+}
 
 template <PairForce part, DissipativeWeight weight, class Law>
 Vector3d force_between(const Law& law, double attraction, const Vector3d& d, const End& i, const End& j) {
@@ -151,7 +157,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
                           const double attraction =
                               species == Species::liquid ? double(pass.wall[other].w) : wall_law.attraction;
-                          sum += force_between<part, weight>(wall_law, attraction, d, liquid_end(pass, bead),
+                          sum += force_between<part, weight>(wall_law, attraction, d, end_at_wall(pass, bead),
                                                              wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,

@@ -52,7 +52,7 @@ class Slabs {
 }  // namespace
 
 std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& beads,
-                                       const std::vector<NeighbourBlock>& blocks,
+                                       const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
                                        const Parameters& parameters) {
   if (slabs.axis < 0 || slabs.axis > 2)
     throw InvalidInput(fmt::format("stress.axis: {}, allowed: 0 to 2", slabs.axis));
@@ -78,7 +78,8 @@ std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& be
   // The slab's own mean takes one bead's share of the motion.
   for (std::size_t k = 0; k < slabs.count; ++k)
     if (count[k] > 1) {
-      result[k].temperature = result[k].pressure.trace() / (3.0 * static_cast<double>(count[k] - 1));
+      result[k].temperature =
+          result[k].pressure.trace() / (parameters.dimensions * static_cast<double>(count[k] - 1));
       result[k].pressure *= static_cast<double>(count[k]) / static_cast<double>(count[k] - 1);
     }
   for (const NeighbourBlock& block : blocks) {
@@ -89,8 +90,8 @@ std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& be
       layers.divide(from, from - layers.length(apart),
                     [&](std::size_t slab, double part) { result[slab].pressure += part * stress; });
     };
-    for_each_pair_stress<PairForce::conservative>(block, beads, beads.velocity, parameters, share);
-    for_each_pair_stress<PairForce::friction>(block, beads, beads.velocity, parameters, share);
+    for_each_pair_stress<PairForce::conservative>(block, beads, ghosts, parameters, share);
+    for_each_pair_stress<PairForce::friction>(block, beads, ghosts, parameters, share);
   }
   const double volume = parameters.domain.size().prod() / static_cast<double>(slabs.count);
   for (std::size_t k = 0; k < slabs.count; ++k) {

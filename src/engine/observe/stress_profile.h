@@ -5,6 +5,7 @@
 #include "engine/beads.h"
 #include "engine/neighbours.h"
 #include "engine/parameters.h"
+#include "engine/walls/ghosts.h"
 
 namespace dmf::engine {
 
@@ -31,7 +32,7 @@ struct SlabStress {
 /// In double precision, from densities and neighbours of the present positions; lowest slab first.
 /// @throws InvalidInput for an axis or a count that there is not.
 std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& beads,
-                                       const std::vector<NeighbourBlock>& blocks,
+                                       const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
                                        const Parameters& parameters);
 
 }  // namespace dmf::engine

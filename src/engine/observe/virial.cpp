@@ -4,17 +4,19 @@
 
 namespace dmf::engine {
 
-Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
                  const Parameters& parameters) {
   Virial result;
   result.of_bead.resize(beads.size());
   std::vector<Eigen::Matrix3d> of_bead(beads.size(), Eigen::Matrix3d::Zero());
-  for (const NeighbourBlock& block : blocks)
-    for_each_pair_stress<PairForce::conservative>(
-        block, beads, beads.velocity, parameters,
-        [&](std::uint32_t i, const Vector3d& apart, double force_over_distance) {
-          of_bead[i] += 0.5 * force_over_distance * apart * apart.transpose();
-        });
+  const auto share = [&](std::uint32_t i, const Vector3d& apart, double force_over_distance) {
+    of_bead[i] += 0.5 * force_over_distance * apart * apart.transpose();
+  };
+  for (const NeighbourBlock& block : blocks) {
+    for_each_pair_stress<PairForce::conservative>(block, beads, ghosts, parameters, share);
+    if (parameters.boundaries.shear_rate != 0)
+      for_each_pair_stress<PairForce::friction>(block, beads, ghosts, parameters, share);
+  }
   for (std::size_t i = 0; i < beads.size(); ++i) {
     result.total += of_bead[i];
     result.of_bead[i] = static_cast<float>(of_bead[i].trace() / 3.0);

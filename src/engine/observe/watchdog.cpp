@@ -43,13 +43,12 @@ std::string side_beyond(const Vector3d& at, int axis, const Domain& domain) {
   return fmt::format("beyond the {} side of {}", below ? "lower" : "upper", "xyz"[axis]);
 }
 
-std::string fault_of_beads(const Parameters& parameters, const Beads& beads, const DropletTracker& tracker) {
-  double twice_energy = 0;
+std::string fault_of_beads(const Parameters& parameters, const Beads& beads, double temperature,
+                           const DropletTracker& tracker) {
   std::size_t beyond = beads.size(), in_solid = beads.size();
   const Solid solid(parameters);
   for (std::size_t i = 0; i < beads.size(); ++i) {
-    const Record &p = beads.position[i], &v = beads.velocity[i];
-    twice_energy += Vector3d(v.x, v.y, v.z).squaredNorm();
+    const Record& p = beads.position[i];
     if (axis_beyond({p.x, p.y, p.z}, parameters.domain) >= 0) beyond = i;
     if (!solid.empty() && solid.contains_deep({p.x, p.y, p.z}, solid_margin)) in_solid = i;
   }
@@ -68,8 +67,7 @@ std::string fault_of_beads(const Parameters& parameters, const Beads& beads, con
   }
   if (beads.size() < DropletTracker::fewest_beads) return "";
   const double count = static_cast<double>(beads.size());
-  const double temperature = twice_energy / (3.0 * count);
-  const double chance = 6.0 * std::sqrt(2.0 / (3.0 * count));
+  const double chance = 6.0 * std::sqrt(2.0 / (parameters.dimensions * count));
   const double set = parameters.liquid.temperature;
   const double lowest = (parameters.watchdog.lowest_temperature - chance) * set;
   const double highest = (parameters.watchdog.highest_temperature + chance) * set;
@@ -127,9 +125,10 @@ std::string fault_of_vapour(const Parameters& parameters, const DropletTracker& 
 
 }  // namespace
 
-std::string find_fault(const Parameters& parameters, const Beads& beads, const Microparticles& microparticles,
-                       const DropletTracker& tracker, const Carriage& carriage) {
-  std::string fault = fault_of_beads(parameters, beads, tracker);
+std::string find_fault(const Parameters& parameters, const Beads& beads, double temperature,
+                       const Microparticles& microparticles, const DropletTracker& tracker,
+                       const Carriage& carriage) {
+  std::string fault = fault_of_beads(parameters, beads, temperature, tracker);
   if (fault.empty()) fault = fault_of_microparticles(parameters, microparticles, carriage);
   if (fault.empty()) fault = fault_of_vapour(parameters, tracker);
   return fault;

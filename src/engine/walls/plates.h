@@ -13,6 +13,8 @@ struct Plate {
 };
 
 /// @param outward  -1: layers go down from the plane, +1: up, the mirror image.
-Plate plate_at(const Domain& domain, const WallParameters& wall, double plane, int outward);
+/// @param dimensions  with 2, of each layer the beads of one row, half-way between the y sides: 2 / a^2 a
+/// r_c^2.
+Plate plate_at(const Domain& domain, const WallParameters& wall, double plane, int outward, int dimensions);
 
 }  // namespace dmf::engine

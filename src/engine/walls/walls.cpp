@@ -18,7 +18,7 @@ Walls::Walls(const Parameters& parameters) : domain_(parameters.domain), solid_(
 }
 
 void Walls::add_plate(const Parameters& parameters, double plane, int outward, double range) {
-  const Plate plate = plate_at(domain_, parameters.wall, plane, outward);
+  const Plate plate = plate_at(domain_, parameters.wall, plane, outward, parameters.dimensions);
   // One cell across the layers: a run along x then holds a whole strip of wall behind a bead.
   groups_.push_back(add(plate.beads, plate.lower, plate.upper, range, true));
   groups_.back().lower.z() = groups_.back().upper.z() = static_cast<float>(plane);
@@ -79,12 +79,15 @@ void Walls::set_wettability(const ContactAngleField& field, const ContactAngleCu
 }
 
 void Walls::set_fixed_wettability(const Parameters& parameters, const ContactAngleCurve& curve) {
-  if (domain_.has_top_plate())
+  const std::optional<double> given = fixed_wall_attraction(parameters);
+  if (given)
+    set_attraction(std::vector<float>(size(), static_cast<float>(*given)));
+  else if (domain_.has_top_plate())
     set_attraction_of(groups_[1], curve.attraction(parameters.wall.top_contact_angle));
-  if (solid_.empty()) return;
   const LabelGridParameters& solid = parameters.label_grid;
-  set_attraction_of(groups_.back(),
-                    solid.attraction ? *solid.attraction : curve.attraction(solid.contact_angle));
+  if (!solid_.empty() && (!given || solid.attraction))
+    set_attraction_of(groups_.back(),
+                      solid.attraction ? *solid.attraction : curve.attraction(solid.contact_angle));
 }
 
 void Walls::set_attraction_of(const Group& group, double attraction) {

@@ -36,7 +36,8 @@ class Walls {
   /// Sets A_lw of every bead of the lower plate. @throws InvalidInput, unchanged, for an angle outside the
   /// curve.
   void set_wettability(const ContactAngleField& field, const ContactAngleCurve& curve);
-  /// Shows the fixed angles: that of the top plate, and the angle or attraction of the label grid's solid.
+  /// Shows what stays: the angle of the top plate and that of the label grid's solid, or the attractions that
+  /// are given for it and for all walls (fixed_wall_attraction()).
   /// @throws InvalidInput for an angle outside the curve.
   void set_fixed_wettability(const Parameters& parameters, const ContactAngleCurve& curve);
 
