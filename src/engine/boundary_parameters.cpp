@@ -68,6 +68,20 @@ void check_shear(const Parameters& parameters, std::vector<std::string>& found) 
                     rate, largest, most_in_a_step));
 }
 
+/// What does not know of images that are more than shifted, or of a plane.
+void check_company(const Parameters& parameters, std::vector<std::string>& found) {
+  const BoundaryParameters& boundaries = parameters.boundaries;
+  bool mirrors = false;
+  for (const auto& sides : {boundaries.lower_reflection, boundaries.upper_reflection})
+    for (const Reflection reflection : sides) mirrors = mirrors || reflection == Reflection::symmetric;
+  if (mirrors && !parameters.mixture.liquids.empty())
+    found.push_back("boundaries: symmetric sides with several species, allowed: with one");
+  if (parameters.label_grid.grid && (mirrors || boundaries.shear_rate != 0 || parameters.dimensions == 2))
+    found.push_back(
+        "label_grid: with symmetric sides, a shear rate or dimensions: 2, allowed: in three dimensions "
+        "without");
+}
+
 }  // namespace
 
 std::vector<std::string> boundary_violations(const Parameters& parameters) {
@@ -75,6 +89,7 @@ std::vector<std::string> boundary_violations(const Parameters& parameters) {
   check_reflections(parameters.domain, parameters.boundaries, found);
   check_velocities(parameters, found);
   check_shear(parameters, found);
+  check_company(parameters, found);
   if (parameters.dimensions != 2 && parameters.dimensions != 3)
     found.push_back(fmt::format("dimensions: {}, allowed: 2 or 3", parameters.dimensions));
   if (parameters.dimensions == 2 && (parameters.domain.lower_side[1] != Side::reflecting ||

@@ -121,6 +121,9 @@ std::vector<std::string> mixture_violations(const Parameters& parameters) {
   std::vector<std::string> found;
   check_liquids(parameters, found);
   check_pairs(parameters, found);
+  if (wall_coefficients(parameters) && parameters.wall.attraction)
+    found.push_back(fmt::format("wall.attraction: {} beside pairs.liquid.wall, allowed: one of both",
+                                *parameters.wall.attraction));
   return found;
 }
 
