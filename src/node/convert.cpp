@@ -270,7 +270,9 @@ sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContex
   cloud.width = static_cast<std::uint32_t>(snapshot.positions.size());
   cloud.is_bigendian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
   cloud.is_dense = true;
-  cloud.point_step = sizeof(Record);
+  // In a mixture another word a record says which liquid.
+  const bool mixed = !snapshot.bead_species.empty();
+  cloud.point_step = sizeof(Record) + (mixed ? sizeof(std::uint32_t) : 0);
   cloud.row_step = cloud.point_step * cloud.width;
   const auto add_field = [&cloud](const char* name, std::size_t offset, std::uint8_t type) {
     sensor_msgs::PointField field;
@@ -287,6 +289,8 @@ sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContex
   add_field("droplet", offsetof(Record, droplet), sensor_msgs::PointField::UINT32);
   add_field("speed", offsetof(Record, speed), sensor_msgs::PointField::FLOAT32);
 
+  if (mixed) add_field("species", sizeof(Record), sensor_msgs::PointField::UINT32);
+
   const auto length = static_cast<float>(context.display_length());
   const auto velocity = static_cast<float>(context.scene.units.velocity_m_per_s());
   cloud.data.resize(cloud.row_step);
@@ -298,7 +302,11 @@ sensor_msgs::PointCloud2 to_particles(const Frame& frame, const ConversionContex
                         snapshot.bead_ids[i],
                         snapshot.bead_droplets[i],
                         snapshot.velocities[i].norm() * velocity};
-    std::memcpy(cloud.data.data() + i * sizeof(Record), &record, sizeof(Record));
+    std::uint8_t* const to = cloud.data.data() + i * cloud.point_step;
+    std::memcpy(to, &record, sizeof(Record));
+    if (!mixed) continue;
+    const std::uint32_t species = snapshot.bead_species[i];
+    std::memcpy(to + sizeof(Record), &species, sizeof species);
   }
   return cloud;
 }

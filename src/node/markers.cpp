@@ -56,6 +56,13 @@ std_msgs::ColorRGBA droplet_color(std::uint32_t id) {
   return color(channel(5), channel(3), channel(1), 0.9);
 }
 
+/// Of a liquid beside the first one: its own, whichever droplet, and so that what is in it shows.
+std_msgs::ColorRGBA medium_color(std::uint32_t species) {
+  std_msgs::ColorRGBA result = droplet_color(species + 2);
+  result.a = kSeeThrough;
+  return result;
+}
+
 geometry_msgs::Point point(double x, double y, double z) {
   geometry_msgs::Point result;
   result.x = x;
@@ -165,8 +172,11 @@ Marker droplet_label(const engine::DropletObservation& droplet, const Frame& fra
       point(s * droplet.centroid.x(), s * droplet.centroid.y(), s * (droplet.upper.z() + kLabelGap));
   result.scale.z = s * 2.0;
   result.color = color(1, 1, 1);
-  result.text = fmt::format("droplet {}\n{}, {}", droplet.id, angle_text("adv", droplet.advancing_angle),
-                            angle_text("rec", droplet.receding_angle));
+  const std::string liquid =
+      droplet.species == 0 ? "" : " of " + liquid_name(context.scene.parameters, droplet.species);
+  result.text =
+      fmt::format("droplet {}{}\n{}, {}", droplet.id, liquid, angle_text("adv", droplet.advancing_angle),
+                  angle_text("rec", droplet.receding_angle));
   return result;
 }
 
@@ -274,7 +284,8 @@ MarkerArray droplet_markers(const Frame& frame, const ConversionContext& context
   std::set<std::uint32_t> carrying;
   for (const auto& body : snapshot.microparticles) carrying.insert(body.droplet);
   for (const auto& droplet : snapshot.droplets) {
-    std_msgs::ColorRGBA fill = droplet_color(droplet.id);
+    std_msgs::ColorRGBA fill =
+        droplet.species == 0 ? droplet_color(droplet.id) : medium_color(droplet.species);
     if (carrying.count(droplet.id)) fill.a = kSeeThrough;
     lists.emplace(droplet.id, beads("droplets", droplet.id, fill, frame, context));
   }

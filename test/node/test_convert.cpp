@@ -266,6 +266,23 @@ TEST_F(ConvertTest, ParticlesAreScaledForTheScreen) {
   EXPECT_FLOAT_EQ(number(0, 5), 5 * 5.0f) << "true speed, not scaled: |(3, 4, 0)| r_c/tau";
 }
 
+TEST_F(ConvertTest, ParticlesOfAMixtureSayWhichLiquidTheyAre) {
+  auto snapshot = std::make_shared<engine::Snapshot>(*frame_->snapshot);
+  snapshot->bead_species = {0, 1, 1, 2};
+  frame_->snapshot = snapshot;
+  const auto cloud = to_particles(*frame_, context_);
+  ASSERT_EQ(cloud.fields.size(), 7u);
+  EXPECT_EQ(cloud.fields[6].name, "species");
+  ASSERT_EQ(cloud.data.size(), 4 * cloud.point_step);
+  for (std::size_t bead = 0; bead < 4; ++bead) {
+    std::uint32_t id, species;
+    std::memcpy(&id, &cloud.data[bead * cloud.point_step + cloud.fields[3].offset], sizeof id);
+    std::memcpy(&species, &cloud.data[bead * cloud.point_step + cloud.fields[6].offset], sizeof species);
+    EXPECT_EQ(id, snapshot->bead_ids[bead]);
+    EXPECT_EQ(species, snapshot->bead_species[bead]);
+  }
+}
+
 TEST_F(ConvertTest, TransformsAreScaledForTheScreen) {
   const auto droplets = droplet_transforms(*frame_, context_);
   ASSERT_EQ(droplets.size(), 2u);
