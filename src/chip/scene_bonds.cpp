@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxSections = 10'000;
 constexpr std::uint64_t kMaxSubdivisions = 6;
+constexpr std::size_t kMaxVertices = 100'000;  // of all membranes: a line of the file makes up to 40,962
 // The engine checks its own ranges (violations), so that each stands once; here any number goes.
 constexpr std::uint64_t kAnyInteger = std::numeric_limits<std::uint32_t>::max();
 
@@ -152,8 +153,15 @@ void read_chains(const YamlReader& root, Scene& scene) {
 }
 
 void read_membranes(const YamlReader& root, Scene& scene) {
+  std::size_t vertices = 0;
   for (const YamlReader& section : root.mappings("membranes", {0, kMaxSections})) {
     scene.membranes.push_back(read_membrane(section, scene));
+    vertices += scene.membranes.back().mesh->vertices.size();
+    if (vertices > kMaxVertices) {
+      section.report("", fmt::format("{} vertices with the membranes before, allowed: up to {} in all",
+                                     vertices, kMaxVertices));
+      break;
+    }
     check(scene.membranes.back(), root, section, scene);
   }
 }

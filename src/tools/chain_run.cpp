@@ -31,8 +31,8 @@ engine::Parameters parameters_of(const ChainRun& how) {
   parameters.integrator = how.integrator;
   parameters.seed = how.seed;
   parameters.watchdog.evaporation = 1;
-  // Until the chains are stretched the pull heats the box.
-  if (how.stretching_force != 0) parameters.watchdog.highest_temperature = 100;
+  // Until the chains are stretched the pull heats the box, and the energy of a flow counts as heat.
+  if (how.stretching_force != 0 || how.gravity != 0) parameters.watchdog.highest_temperature = 100;
   return parameters;
 }
 

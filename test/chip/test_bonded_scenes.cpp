@@ -72,6 +72,10 @@ TEST(BondedScenes, TellWhatIsWrongWithLineAndKey) {
   EXPECT_TRUE(
       holds(told("membranes: [{center: [8, 8, 3], radius: 2, shape: cube}]"), "shape: cube, allowed:"));
   EXPECT_TRUE(holds(told("membranes: [{center: [8, 8, 1], radius: 2}]"), "membranes[0]: mesh: vertex"));
+  const std::string fine = "{center: [8, 8, 5], radius: 4, subdivisions: 6}";
+  // After something else that is wrong, so that none of them is looked at closely.
+  EXPECT_TRUE(holds(told("duration: -1\nmembranes: [" + fine + ", " + fine + ", " + fine + ", " + fine + "]"),
+                    "122886 vertices with the membranes before, allowed: up to 100000 in all"));
   EXPECT_TRUE(holds(told("membranes: [{mesh: no_such.obj}]"), "membranes[0].mesh: no_such.obj"));
 }
 

@@ -96,7 +96,7 @@ void study_chain(const StudyOptions& options) {
   for (const double beads : {5, 10, 20, 30}) cases.push_back({"ideal", beads});
   for (const double beads : {5, 8, 13, 20}) cases.push_back({"solvent", beads});
   for (const double force : {1, 3, 10, 20, 40}) cases.push_back({"pulled", force});
-  for (const double gravity : {0.0, 0.02, 0.05, 0.1}) cases.push_back({"channel", gravity});
+  for (const double gravity : {0.0, 0.02, 0.05}) cases.push_back({"channel", gravity});
   std::vector<std::string> labels;
   for (const Case& one : cases) labels.push_back(one.label());
   require_known(options, labels);
