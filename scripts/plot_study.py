@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Figure of one of `dmf_study`'s studies of microparticles, or of transport_velocity, from the CSV files that it leaves.
+"""Figure of one of `dmf_study`'s studies of microparticles, of transport_velocity or of poiseuille, from the CSV files that it leaves.
 
     scripts/plot_study.py pickup_size FOLDER            # writes FOLDER/pickup_size.png
     scripts/plot_study.py inner_flow FOLDER flow.png
@@ -233,6 +233,27 @@ def plot_transport_velocity(folder):
     return figure
 
 
+def plot_poiseuille(folder):
+    """Velocity across the channel with the parabola through its middle, density and temperature, of every kind of wall."""
+    figure, (flow, density, temperature) = plt.subplots(1, 3, figsize=(12, 4.2), constrained_layout=True)
+    for number, path in enumerate(sorted(glob.glob(os.path.join(folder, "poiseuille_*_seed1.csv")))):
+        label = re.fullmatch(r"poiseuille_(.*)_seed1\.csv", os.path.basename(path)).group(1).replace("_", " ")
+        table, color = columns_of(path), "C%d" % number
+        flow.plot(table["z"], table["velocity"], ".", color=color, markersize=4, label=label)
+        flow.plot(table["z"], table["parabola"], color=color, linewidth=0.8)
+        density.plot(table["z"], table["density"], color=color, linewidth=0.8, label=label)
+        temperature.plot(table["z"], table["temperature"], color=color, linewidth=0.8, label=label)
+    flow.axhline(8.60, color="black", linewidth=0.8, linestyle="--", label="Lan, u_max 3D")
+    flow.axhline(9.18, color="black", linewidth=0.8, linestyle=":", label="Lan, u_max 2D")
+    flow.set_ylabel(r"velocity ($r_c/\tau$)")
+    density.set_ylabel(r"density ($r_c^{-3}$, 2D $r_c^{-2}$)")
+    temperature.set_ylabel(r"$k_BT$")
+    for axis in (flow, density, temperature):
+        axis.set_xlabel(r"z ($r_c$)")
+    flow.legend(fontsize=7)
+    return figure
+
+
 def main(name, folder, target=None):
     if name in TRANSPORT:
         figure = plot_transport(folder, name)
@@ -242,8 +263,10 @@ def main(name, folder, target=None):
         figure = plot_inner_flow(folder)
     elif name == "transport_velocity":
         figure = plot_transport_velocity(folder)
+    elif name == "poiseuille":
+        figure = plot_poiseuille(folder)
     else:
-        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity"]
+        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity", "poiseuille"]
         sys.exit("%s: no such study, allowed: %s" % (name, ", ".join(known)))
     figure.savefig(target or os.path.join(folder, name + ".png"), dpi=110)
 

@@ -15,7 +15,7 @@ enum class Reflection {
   bounce_forward,  ///< v -> 2 u - v, but the way along the side goes on (Visser 2005; Lan 2.2.2)
   specular,        ///< the normal component turns round: no friction
   maxwellian,      ///< leaves where it came with a velocity drawn from what effuses from a gas at k_BT
-  thin_layer,      ///< as maxwellian, and so in every step for all beads in a layer on it (Chen 2.3)
+  thin_layer,      ///< all beads in a layer on it get a velocity of k_BT away from it, every step (Chen 2.3)
   symmetric,       ///< specular, and mirror images of the beads stand behind it (Lan 2.2.3)
 };
 

@@ -19,18 +19,31 @@ double logarithm(double x) {
   return 2 * s * series + 0.69314718055994531 * exponent;
 }
 
-/// Uniform numbers in (0, 1) of one draw: a function of key, bead and draw.
+/// Random numbers of one draw: a function of key, bead and draw.
 class Draws {
  public:
   Draws(StepKey key, std::uint32_t id, std::uint32_t draw)
       : state_(mix64((static_cast<std::uint64_t>(key.first) << 32 | key.second) ^
                      (static_cast<std::uint64_t>(draw) << 32 | id))) {}
-  double next() {
+
+  /// Two of zero mean and unit variance (polar method, Marsaglia and Bray 1964).
+  std::array<double, 2> gaussian_pair() {
+    double x, y, squared;
+    do {
+      x = 2 * uniform() - 1;
+      y = 2 * uniform() - 1;
+      squared = x * x + y * y;
+    } while (squared >= 1);
+    const double scale = std::sqrt(-2 * logarithm(squared) / squared);
+    return {scale * x, scale * y};
+  }
+
+ private:
+  double uniform() {
     state_ += 0x9e3779b97f4a7c15ull;  // SplitMix64
     return (static_cast<double>(mix64(state_) >> 11) + 0.5) * 0x1p-53;
   }
 
- private:
   std::uint64_t state_;
 };
 
@@ -91,21 +104,19 @@ Reflections::Reflections(const Parameters& parameters, std::uint64_t drift)
     }
 }
 
-/// Of a gas at k_BT what effuses through a plane: the normal component with p(v) ~ v exp(-v^2 / 2 k_BT), the
-/// others Gaussian (polar method, Marsaglia and Bray 1964), all relative to the side.
+/// A velocity of a gas at k_BT, relative to the side. Its normal component is that of what effuses through a
+/// plane, p(v) ~ v exp(-v^2 / 2 k_BT), the length of two Gaussian numbers; for beads in a thin layer, which
+/// do not come through a plane, |n . v_R| (Chen eq. 12).
 void Reflections::emit(std::uint32_t id, std::uint32_t draw, int axis, bool upper, Triple& velocity) const {
   Draws draws(key_, id, draw);
-  const double normal = std::sqrt(-2 * temperature_ * logarithm(draws.next()));
-  double x, y, squared;
-  do {
-    x = 2 * draws.next() - 1;
-    y = 2 * draws.next() - 1;
-    squared = x * x + y * y;
-  } while (squared >= 1);
-  const double scale = std::sqrt(-2 * temperature_ * logarithm(squared) / squared);
-  velocity[axis] = static_cast<float>(upper ? -normal : normal);
-  velocity[(axis + 1) % 3] = static_cast<float>(scale * x);
-  velocity[(axis + 2) % 3] = static_cast<float>(scale * y);
+  const double thermal = std::sqrt(temperature_);
+  const auto [a, b] = draws.gaussian_pair();
+  const auto [along, across] = draws.gaussian_pair();
+  const bool in_layer = side(axis, upper).reflection == Reflection::thin_layer;
+  const double normal = in_layer ? std::abs(a) : std::sqrt(a * a + b * b);
+  velocity[axis] = static_cast<float>(thermal * (upper ? -normal : normal));
+  velocity[(axis + 1) % 3] = static_cast<float>(thermal * along);
+  velocity[(axis + 2) % 3] = static_cast<float>(thermal * across);
   if (flat_) velocity[1] = 0;
   for (int k = 0; k < 3; ++k) velocity[k] += side(axis, upper).velocity[k];
 }
