@@ -7,7 +7,7 @@ namespace dmf::engine {
 namespace {
 
 /// How far a layer may be stretched to lie on the faces of voxels.
-constexpr double largest_stretch = 0.1;
+constexpr double largest_stretch = 0.15;
 constexpr double rounding = 1e-6;  ///< of places, in voxels or r_c
 
 /// The label grid in its domain, by voxels that may lie outside of it.
