@@ -31,8 +31,11 @@ StructuredWallRun small_droplet(double spacing) {
 TEST(StructuredWall, RidgesMakeAHydrophobicWallMoreHydrophobic) {
   const StructuredWallResult smooth = run_structured_wall(small_droplet(0));
   const StructuredWallResult ridges = run_structured_wall(small_droplet(3));
-  EXPECT_NEAR(smooth.angle, 132, 8);  // a droplet of 4.5 r_c
+  // A droplet of 4.5 r_c shows more than one of 10 on the same wall, as far as the liquid keeps off it: what it
+  // shows there is what Cassie and Baxter's law begins with.
+  EXPECT_GT(smooth.angle, 132);
   EXPECT_GT(ridges.angle, smooth.angle + 5);
+  EXPECT_NEAR(ridges.angle, cassie_baxter_angle(2.0 / 5, smooth.angle), 4);
   EXPECT_LT(ridges.sunk, 0.5);  // it hangs over the grooves
 }
 

@@ -21,8 +21,10 @@ struct Case {
 std::vector<Case> cases(bool quick, const engine::ContactAngleCurve& curve) {
   const double drive = quick ? 20 : 2000;
   std::vector<Case> all;
-  for (const double attraction : {-11.0, -13.0, -15.0, -17.0})  // figure 4: static angles at f_s 0.444
-    all.push_back({fmt::format("static A={:g} S=5", attraction), attraction, 5, 0, 0});
+  // Figure 4: static angles at f_s 0.444, beside those of the smooth wall in the same slab.
+  for (const double attraction : {-11.0, -13.0, -15.0, -17.0})
+    for (const double s : {0.0, 5.0})
+      all.push_back({fmt::format("static A={:g} S={:g}", attraction, s), attraction, s, 0, 0});
   // Figure 5: against the smooth wall, at two angles.
   for (const auto& [angle, spacing] : {std::pair{130.59, 5.0}, {67.84, 9.0}})
     for (const double s : {0.0, spacing})
