@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Figure of one of `dmf_study`'s studies of microparticles, of transport_velocity or of poiseuille, from the CSV files that it leaves.
+"""Figure of one of `dmf_study`'s studies of microparticles, or of transport_velocity, poiseuille, square_channel, structured_wall or
+infiltration, from the CSV files that it leaves.
 
     scripts/plot_study.py pickup_size FOLDER            # writes FOLDER/pickup_size.png
     scripts/plot_study.py inner_flow FOLDER flow.png
@@ -254,6 +255,69 @@ def plot_poiseuille(folder):
     return figure
 
 
+def plot_square_channel(folder):
+    """Velocity across the channel at three heights, beside the series."""
+    paths = sorted(glob.glob(os.path.join(folder, "square_channel_a*_seed1.csv")))
+    if not paths:
+        sys.exit("%s: no profile of square_channel" % folder)
+    figure, axes = plt.subplots(1, len(paths), figsize=(6.4 * len(paths), 4.2), constrained_layout=True, squeeze=False)
+    for axis, path in zip(axes[0], paths):
+        table = columns_of(path)
+        levels = np.unique(table["z"])
+        for share, color in ((0.5, "tab:blue"), (0.2, "tab:orange"), (0.05, "tab:green")):
+            z = levels[int(share * len(levels))]
+            row = table["z"] == z
+            axis.plot(table["y"][row], table["velocity"][row], "o", markersize=3, color=color, label="z = %g" % z)
+            axis.plot(table["y"][row], table["theory"][row], color=color)
+        axis.set_title(os.path.basename(path)[len("square_channel_"):-len("_seed1.csv")] + ", lines: series", fontsize=10)
+        axis.set_xlabel("y ($r_c$)")
+        axis.set_ylabel(r"velocity ($r_c/\tau$)")
+        axis.legend()
+    return figure
+
+
+def plot_structured_wall(folder):
+    """Front and advancing angle over time of every driven run."""
+    paths = sorted(path for path in glob.glob(os.path.join(folder, "structured_wall_*_seed=*.csv")))
+    if not paths:
+        sys.exit("%s: no driven run of structured_wall" % folder)
+    figure, (front, angle) = plt.subplots(2, 1, figsize=(8, 7), constrained_layout=True, sharex=True)
+    for path in paths:
+        table = columns_of(path)
+        label = os.path.basename(path)[len("structured_wall_"):-len(".csv")].replace("_", " ")
+        front.plot(table["time"], table["front"], linewidth=1, label=label)
+        angle.plot(table["time"], table["angle"], linewidth=1)
+    front.set_ylabel("front ($r_c$)")
+    front.legend(fontsize=7)
+    angle.set_ylabel("advancing angle (degrees)")
+    angle.set_xlabel(r"time ($\tau$)")
+    return figure
+
+
+def plot_infiltration(folder):
+    """Share of the pore space that is filled, over time."""
+    paths = sorted(glob.glob(os.path.join(folder, "infiltration_*_seed=*.csv")))
+    if not paths:
+        sys.exit("%s: no run of infiltration" % folder)
+    figure, axis = plt.subplots(figsize=(7, 4.5), constrained_layout=True)
+    for path in paths:
+        table = columns_of(path)
+        label = os.path.basename(path)[len("infiltration_"):-len(".csv")].replace("_", " ")
+        axis.plot(table["time"], table["filled"], label=label)
+    axis.set_xlabel(r"time ($\tau$)")
+    axis.set_ylabel("filled share of the pore space")
+    axis.legend(fontsize=8)
+    return figure
+
+
+FIGURES = {
+    "poiseuille": plot_poiseuille,
+    "square_channel": plot_square_channel,
+    "structured_wall": plot_structured_wall,
+    "infiltration": plot_infiltration,
+}
+
+
 def main(name, folder, target=None):
     if name in TRANSPORT:
         figure = plot_transport(folder, name)
@@ -263,10 +327,10 @@ def main(name, folder, target=None):
         figure = plot_inner_flow(folder)
     elif name == "transport_velocity":
         figure = plot_transport_velocity(folder)
-    elif name == "poiseuille":
-        figure = plot_poiseuille(folder)
+    elif name in FIGURES:
+        figure = FIGURES[name](folder)
     else:
-        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity", "poiseuille"]
+        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity", *FIGURES]
         sys.exit("%s: no such study, allowed: %s" % (name, ", ".join(known)))
     figure.savefig(target or os.path.join(folder, name + ".png"), dpi=110)
 

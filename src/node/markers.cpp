@@ -108,6 +108,34 @@ Marker top_plate(const Frame& frame, const ConversionContext& context) {
   return result;
 }
 
+/// The solid of a label grid: its voxels next to fluid ones, see-through, for liquid may be behind them.
+Marker solid(const Frame& frame, const ConversionContext& context) {
+  const engine::LabelGrid& grid = *context.scene.parameters.label_grid.grid;
+  const double s = context.display_length();
+  const auto is_fluid = [&grid](int x, int y, int z) {
+    const bool inside =
+        x >= 0 && x < grid.voxels[0] && y >= 0 && y < grid.voxels[1] && z >= 0 && z < grid.voxels[2];
+    return inside && grid.labels[grid.index(x, y, z)] == engine::LabelGrid::fluid;
+  };
+  Marker result = marker("solid", 0, Marker::CUBE_LIST, frame);
+  result.scale.x = s * grid.voxel_size.x();
+  result.scale.y = s * grid.voxel_size.y();
+  result.scale.z = s * grid.voxel_size.z();
+  result.color = color(0.55, 0.5, 0.45, 0.6);
+  for (int z = 0; z < grid.voxels[2]; ++z)
+    for (int y = 0; y < grid.voxels[1]; ++y)
+      for (int x = 0; x < grid.voxels[0]; ++x) {
+        if (grid.labels[grid.index(x, y, z)] == engine::LabelGrid::fluid) continue;
+        if (!is_fluid(x - 1, y, z) && !is_fluid(x + 1, y, z) && !is_fluid(x, y - 1, z) &&
+            !is_fluid(x, y + 1, z) && !is_fluid(x, y, z - 1) && !is_fluid(x, y, z + 1))
+          continue;
+        const engine::Vector3d middle =
+            s * (grid.origin + grid.voxel_size.cwiseProduct(engine::Vector3d(x + 0.5, y + 0.5, z + 0.5)));
+        result.points.push_back(point(middle.x(), middle.y(), middle.z()));
+      }
+  return result;
+}
+
 Marker pad(const chip::Electrode& electrode, const chip::ElectrodeState& state, const Frame& frame,
            const ConversionContext& context) {
   const double s = context.display_length();
@@ -265,6 +293,7 @@ MarkerArray chip_markers(const Frame& frame, const ConversionContext& context) {
   MarkerArray array;
   array.markers.push_back(plate(frame, context));
   if (context.scene.parameters.domain.has_top_plate()) array.markers.push_back(top_plate(frame, context));
+  if (context.scene.parameters.label_grid.grid) array.markers.push_back(solid(frame, context));
   const auto& electrodes = context.scene.layout.electrodes();
   for (std::size_t i = 0; i < electrodes.size(); ++i) {
     array.markers.push_back(pad(electrodes[i], frame.electrodes.at(i), frame, context));

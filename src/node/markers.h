@@ -8,14 +8,14 @@
 #include "node/frame.h"
 
 /// From frames to what RViz draws: pure functions. All in frame chip, scaled by the display scale. Namespaces
-/// and ids are stable: plate (0), top_plate (0), rail (0), electrodes and electrode_labels (channel),
-/// droplets and droplet_labels (droplet id), microparticles (microparticle id), vapour (0), chains (0),
-/// membranes (membrane id).
+/// and ids are stable: plate (0), top_plate (0), solid (0), rail (0), electrodes and electrode_labels
+/// (channel), droplets and droplet_labels (droplet id), microparticles (microparticle id), vapour (0), chains
+/// (0), membranes (membrane id).
 namespace dmf::node {
 
-/// The plate and the top plate over it, each electrode coloured by its voltage (grey 0 V, orange at the
-/// board's limit; black and with a red number when it is disabled), its channel number, and in front of the
-/// plate what the rail does, in red when it was halted.
+/// The plate, the top plate over it and the solid of a label grid, each electrode coloured by its voltage
+/// (grey 0 V, orange at the board's limit; black and with a red number when it is disabled), its channel
+/// number, and in front of the plate what the rail does, in red when it was halted.
 visualization_msgs::MarkerArray chip_markers(const Frame& frame, const ConversionContext& context);
 
 /// Each droplet as the spheres of its beads, coloured by id, see-through while it carries a microparticle,

@@ -30,6 +30,8 @@ int main(int argc, char** argv) {
       {"membrane", study_membrane},
       {"splitting", study_splitting},
       {"square_channel", study_square_channel},
+      {"infiltration", study_infiltration},
+      {"structured_wall", study_structured_wall},
       {"transport_velocity", study_transport_velocity}};
   std::string transport_titles;
   for (const StudyTitle& study : transport_studies()) {
@@ -56,6 +58,8 @@ int main(int argc, char** argv) {
       "  plates           pressure of a droplet between two plates against Laplace's, and what it keeps off\n"
       "  splitting        between two plates: up to which gap over pitch a droplet splits\n"
       "  square_channel   plain DPD along a square channel against the series, mass flow against Chen's\n"
+      "  structured_wall  a droplet on ridges: angle against Cassie-Baxter, front, velocity over spacing\n"
+      "  infiltration     liquid that goes into a slit or between grains, by itself or pushed\n"
       "  transport_velocity  how fast a droplet moves along electrodes under what voltage\n"
       "  protocols        success rate of the controller's protocols, with faults too\n"
       "  chain            chains: random walks, relaxation, good solvent, pulled, in a channel\n"

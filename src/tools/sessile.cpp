@@ -11,11 +11,6 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-/// A curve that passes an attraction through: the angle asked for is the attraction's own place on it.
-engine::ContactAngleCurve uncalibrated() {
-  return engine::ContactAngleCurve({{-60.0, 0.0, 0.0}, {0.0, 180.0, 0.0}});
-}
-
 void sample(const engine::Simulation& simulation, engine::SessileAngle& meter, double& temperature) {
   const auto snapshot = simulation.observe({true, false});
   const engine::DropletObservation* largest = largest_droplet(*snapshot);
@@ -31,6 +26,12 @@ void sample(const engine::Simulation& simulation, engine::SessileAngle& meter, d
 
 }  // namespace
 
+engine::ContactAngleCurve uncalibrated() {
+  return engine::ContactAngleCurve({{-60.0, 0.0, 0.0}, {0.0, 180.0, 0.0}});
+}
+
+double uncalibrated_angle(double attraction) { return (attraction + 60.0) * 3.0; }
+
 SessileResult run_sessile(const SessileRun& run) {
   const double cosine = std::cos(run.starting_angle * degree);
   // Cap of the same volume: R^3 4/3 pi = cap^3 pi/3 (2 + cos)(1 - cos)^2.
@@ -44,7 +45,7 @@ SessileResult run_sessile(const SessileRun& run) {
   parameters.domain.upper = {half_width, half_width, 2.2 * run.radius + 4.0};
   parameters.observe_interval = 20;
   engine::Simulation simulation(parameters, uncalibrated(), {1, "auto"});
-  const double pass_through = (run.attraction + 60.0) * 3.0;
+  const double pass_through = uncalibrated_angle(run.attraction);
   simulation.set_wettability([pass_through](double, double) { return pass_through; });
   simulation.add_droplet({{0, 0, -cap * cosine}, cap});
 

@@ -23,6 +23,10 @@ struct SessileResult {
   double temperature = 0;  ///< mean, k_BT
 };
 
+/// A curve that passes attractions from -60 to 0 through: each is shown by an angle of its own, degrees.
+engine::ContactAngleCurve uncalibrated();
+double uncalibrated_angle(double attraction);
+
 /// @throws engine::Instability, engine::InvalidInput; std::runtime_error when no circle could be fitted.
 SessileResult run_sessile(const SessileRun& run);
 

@@ -130,6 +130,10 @@ void study_chain(const StudyOptions& options);
 void study_membrane(const StudyOptions& options);
 void study_plates(const StudyOptions& options);
 void study_splitting(const StudyOptions& options);
+/// A droplet on ridges: static angle against Cassie and Baxter, front and velocity under a force (Yao).
+void study_structured_wall(const StudyOptions& options);
+/// Liquid that goes into pores, by itself or pushed, over the contact angle (Liu 4.2).
+void study_infiltration(const StudyOptions& options);
 void study_square_channel(const StudyOptions& options);  ///< plain DPD along a duct (Chen 3.1)
 void study_transport_velocity(const StudyOptions& options);
 

@@ -54,7 +54,7 @@ TEST(ShearedSides, ForcesAreThoseOfAllImagesThatMovePast) {
     system.parameters.liquid.repulsion = 25;
     const Vector3d size = system.parameters.domain.size();
     scatter_beads(system, 4, {0, 0, 0}, size, [](const Vector3d&) { return true; });
-    const Plates wall = wall_of(system);
+    const Walls wall = wall_of(system);
     Microparticles none(system.parameters);
     Pairs pairs(system.parameters);
     Forces forces(system.parameters, "auto");
@@ -166,7 +166,7 @@ TEST(SymmetricSide, ForcesAreThoseOfTheWholeSystemItIsHalfOf) {
   for (const PairForce part : {PairForce::conservative, PairForce::friction}) {
     std::vector<std::vector<Record>> found;
     for (System* system : {&half, &whole}) {
-      const Plates wall = wall_of(*system);
+      const Walls wall = wall_of(*system);
       Microparticles none(system->parameters);
       Pairs pairs(system->parameters);
       Forces forces(system->parameters, "auto");

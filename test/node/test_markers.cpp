@@ -59,6 +59,21 @@ TEST_F(MarkersTest, EachElectrodeHasItsNumberAndAColourOfItsVoltage) {
   EXPECT_NE(markers.at({"electrodes", 0}).color, markers.at({"electrodes", 1}).color) << "63 V";
 }
 
+TEST_F(MarkersTest, TheSolidIsShownByItsVoxelsNextToTheFluid) {
+  const engine::Domain& domain = scene_.parameters.domain;
+  auto grid = std::make_shared<engine::LabelGrid>();
+  grid->origin = domain.lower;
+  grid->voxels = {5, 5, 5};
+  grid->voxel_size = domain.size() / 5;
+  grid->labels.assign(125, engine::LabelGrid::solid);
+  grid->labels[grid->index(2, 2, 2)] = engine::LabelGrid::fluid;
+  scene_.parameters.label_grid.grid = grid;
+  const Marker solid = by_id(chip_markers(*frame_, context_)).at({"solid", 0});
+  EXPECT_EQ(solid.type, Marker::CUBE_LIST);
+  EXPECT_EQ(solid.points.size(), 6u);
+  EXPECT_NEAR(solid.scale.x, context_.display_length() * domain.size().x() / 5, 1e-12);
+}
+
 TEST_F(MarkersTest, ADisabledElectrodeIsNotTakenForOneThatIsOff) {
   auto before = by_id(chip_markers(*frame_, context_));
   frame_->electrodes[2].disabled = true;

@@ -10,10 +10,6 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 /// Rows below this height are left out of the fit: the liquid is layered there.
 constexpr double lowest_fitted = 1.5;
-/// Thickness of the slab of RunningAngles, to both sides of the centre, r_c. Thick enough to collect beads,
-/// thin enough that the surface does not curve away across it (2 % of the radius of an R = 5 droplet's
-/// footprint).
-constexpr double half_slab = 1.0;
 /// Samples, after forgetting, below which no angle is reported.
 constexpr double fewest_samples = 10;
 constexpr double reach = 24, reach_up = 32;  ///< of RunningAngles, r_c
@@ -156,7 +152,7 @@ std::optional<double> SessileAngle::angle(double bulk_density) const {
   return contact_angle_of(*fitted);
 }
 
-RunningAngles::RunningAngles() : profile_(-reach, reach, reach_up) {}
+RunningAngles::RunningAngles(double thickness) : thickness_(thickness), profile_(-reach, reach, reach_up) {}
 
 void RunningAngles::turn(const Eigen::Vector2d& way) {
   way_ = way;
@@ -170,14 +166,15 @@ void RunningAngles::begin_sample(double elapsed, double window) {
 
 void RunningAngles::add(const Eigen::Vector3d& from_centre) {
   const double across = -way_.y() * from_centre.x() + way_.x() * from_centre.y();
-  if (std::abs(across) > half_slab) return;
+  if (std::abs(across) > 0.5 * thickness_) return;
   profile_.add(way_.dot(from_centre.head<2>()), from_centre.z());
 }
 
 std::optional<RunningAngles::Angles> RunningAngles::angles(double bulk_density) const {
   if (profile_.samples() < fewest_samples) return std::nullopt;
-  const std::vector<Eigen::Vector2d> points = profile_.surface(
-      0.5 * bulk_density, [](double) { return DensityProfile::bin * DensityProfile::bin * 2 * half_slab; });
+  const double volume = DensityProfile::bin * DensityProfile::bin * thickness_;
+  const std::vector<Eigen::Vector2d> points =
+      profile_.surface(0.5 * bulk_density, [volume](double) { return volume; });
   std::vector<Eigen::Vector2d> front, rear;
   for (const Eigen::Vector2d& point : points) (point.x() > 0 ? front : rear).push_back(point);
   const std::optional<Circle> front_circle = fit_circle(front), rear_circle = fit_circle(rear);

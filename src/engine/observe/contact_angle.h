@@ -81,7 +81,9 @@ class SessileAngle {
 /// centre along its way.
 class RunningAngles {
  public:
-  RunningAngles();
+  /// @param thickness  of the slab, r_c. The default is thick enough to collect beads, and thin enough that
+  /// the surface does not curve away across it (2 % of the radius of an R = 5 droplet's footprint).
+  explicit RunningAngles(double thickness = 2.0);
   /// Turns the slab to a new way; what was collected is forgotten. @param way  horizontal unit vector.
   void turn(const Eigen::Vector2d& way);
   const Eigen::Vector2d& way() const { return way_; }
@@ -98,6 +100,7 @@ class RunningAngles {
   void archive(Archive& archive);
 
  private:
+  double thickness_;
   Eigen::Vector2d way_{1, 0};
   DensityProfile profile_;
 };

@@ -7,7 +7,7 @@ namespace dmf::engine {
 namespace {
 
 /// How far a layer may be stretched to lie on the faces of voxels.
-constexpr double largest_stretch = 0.1;
+constexpr double largest_stretch = 0.15;
 constexpr double rounding = 1e-6;  ///< of places, in voxels or r_c
 
 /// The label grid in its domain, by voxels that may lie outside of it.
@@ -78,6 +78,33 @@ bool near_fluid(const Voxels& voxels, const Vector3d& place, const Vector3d& siz
   return false;
 }
 
+/// Voxels that a fluid one, or the outside of the grid, is within so many voxels of along every axis: all
+/// others lie too deep in the solid to look for fluid around each of their sites.
+std::vector<std::uint8_t> voxels_near_fluid(const LabelGrid& grid, const Domain& domain, double range) {
+  std::vector<std::uint8_t> near(grid.labels.size());
+  for (std::size_t k = 0; k < near.size(); ++k) near[k] = grid.labels[k] == LabelGrid::fluid;
+  std::vector<std::uint8_t> spread;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int reach = static_cast<int>(std::ceil(range / grid.voxel_size[axis])) + 1;
+    const int count = grid.voxels[axis];
+    const bool periodic = domain.periodic(axis);
+    const std::size_t stride = axis == 0 ? 1 : axis == 1 ? grid.voxels[0] : grid.index(0, 0, 1);
+    spread = near;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const int at = static_cast<int>(k / stride % count);
+      if (!periodic && (at < reach || at >= count - reach)) spread[k] = 1;
+      if (!near[k]) continue;
+      const std::size_t line = k - at * stride;
+      for (int other = at - reach; other <= at + reach; ++other) {
+        if (!periodic && (other < 0 || other >= count)) continue;
+        spread[line + static_cast<std::size_t>((other % count + count) % count) * stride] = 1;
+      }
+    }
+    near.swap(spread);
+  }
+  return near;
+}
+
 /// Calls visit(site) for every bead.
 template <class Visit>
 void for_each_bead(const Parameters& parameters, Visit visit) {
@@ -87,6 +114,7 @@ void for_each_bead(const Parameters& parameters, Visit visit) {
   const Voxels voxels(grid, domain);
   const Vector3d size = grid.voxel_size, apart = layer_distance(parameters);
   const double range = parameters.liquid.range();
+  const std::vector<std::uint8_t> near = voxels_near_fluid(grid, domain, range);
   std::array<int, 3> layers;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = grid.voxels[axis] * size[axis];
@@ -103,6 +131,10 @@ void for_each_bead(const Parameters& parameters, Visit visit) {
         const Vector3d place = apart.cwiseProduct(Vector3d(i, j, k));
         const Vector3d site = grid.origin + place;
         if (site.z() < above || site.z() > below) continue;
+        std::array<int, 3> own;
+        for (int axis = 0; axis < 3; ++axis)
+          own[axis] = std::min(static_cast<int>(place[axis] / size[axis]), grid.voxels[axis] - 1);
+        if (!near[grid.index(own[0], own[1], own[2])]) continue;
         if (touches_solid(voxels, place, size) && near_fluid(voxels, place, size, range)) visit(site);
       }
 }

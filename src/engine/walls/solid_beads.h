@@ -7,7 +7,7 @@
 namespace dmf::engine {
 
 /// Distances between layers of the lattice of a label grid's beads along the axes, r_c: half the lattice
-/// constant, stretched to whole layers a voxel where that is within a tenth, and to whole cells a period
+/// constant, stretched to whole layers a voxel where that is within 15 %, and to whole cells a period
 /// along a periodic axis.
 Vector3d layer_distance(const Parameters& parameters);
 
