@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "node/engine_thread.h"
+#include "node/memory_limit.h"
 
 // What others ask of the engine thread. Each request runs on it, between two steps.
 
@@ -46,6 +47,7 @@ chip::Reply EngineThread::apply(const chip::Command& command) {
       end_advance(false, "ended by ~reset");
       begin_run(old_time);
       note("reset", "the scene from its start");
+      release_memory();
       if (paused_) reply.message += "; paused, ~unpause_physics starts it";
     } else {
       collect_commands();

@@ -1,5 +1,6 @@
 #include "node/memory_limit.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -19,5 +20,7 @@ void limit_memory([[maybe_unused]] double megabytes) {
   ::setrlimit(RLIMIT_AS, &limit);
 #endif
 }
+
+void release_memory() { ::malloc_trim(0); }
 
 }  // namespace dmf::node

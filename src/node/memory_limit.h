@@ -8,4 +8,8 @@ namespace dmf::node {
 /// request is as long. Does nothing in a build with a sanitizer, which needs address space by the terabyte.
 void limit_memory(double megabytes);
 
+/// Gives what was freed back to the system: after a run has ended, so that a node that lives for days does
+/// not keep in pieces what its runs have taken one after the other.
+void release_memory();
+
 }  // namespace dmf::node

@@ -1,4 +1,5 @@
 """What the node's tests share: proxies of all services, and waiting for messages by wall time."""
+import os
 import threading
 import time
 import xmlrpc.client
@@ -7,6 +8,9 @@ import rosgraph
 import rospy
 from dmf_sim import srv
 from std_srvs.srv import Empty, Trigger
+
+# How much longer than usual to wait: sanitize.sh sets it.
+PATIENCE = float(os.environ.get("DMF_TEST_PATIENCE", "1"))
 
 SERVICES = {
     "set_electrodes": srv.SetElectrodes,
@@ -40,7 +44,7 @@ class Chip:
 
     def __init__(self, name="/chip"):
         for service, kind in SERVICES.items():
-            rospy.wait_for_service(f"{name}/{service}", 20)
+            rospy.wait_for_service(f"{name}/{service}", 20 * PATIENCE)
             setattr(self, service, rospy.ServiceProxy(f"{name}/{service}", kind, persistent=True))
 
     def hash(self):
@@ -77,7 +81,7 @@ class Listener:
 
     def wait(self, condition=lambda message: True, timeout=20):
         """The first message, of those that came or come, that meets the condition."""
-        until = time.monotonic() + timeout
+        until = time.monotonic() + timeout * PATIENCE
         looked_at = 0
         with self._changed:
             while True:

@@ -3,6 +3,7 @@ import time
 
 import actionlib
 import rospy
+from chip_client import PATIENCE
 
 
 class Client:
@@ -10,7 +11,7 @@ class Client:
 
     def __init__(self, name, kind):
         self.client = actionlib.ActionClient(f"chip_controller/{name}", kind)
-        assert self.client.wait_for_server(rospy.Duration(60)), name
+        assert self.client.wait_for_server(rospy.Duration(60 * PATIENCE)), name
 
     def send(self, goal):
         feedback = []
@@ -23,7 +24,7 @@ class Client:
 
     @staticmethod
     def wait(handle, patience=60):
-        end = time.time() + patience
+        end = time.time() + patience * PATIENCE
         while handle.get_comm_state() != actionlib.CommState.DONE:
             assert time.time() < end, handle.feedback[-1:]
             time.sleep(0.02)
