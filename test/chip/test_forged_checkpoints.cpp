@@ -147,7 +147,8 @@ class ForgedCheckpoints : public ::testing::Test {
   std::size_t place_in_engine(int which) {
     const std::size_t first = engine_ + 20;  // format, step, next bead
     const std::uint64_t beads = count_at(first);
-    const std::size_t ids = first + 5 * (8 + 16 * beads), wall = ids + 8 + 4 * beads;
+    const std::size_t ids = first + 5 * (8 + 16 * beads), species = ids + 8 + 4 * beads,
+                      wall = species + 8 + count_at(species);
     const std::size_t droplets = wall + 8 + 4 * count_at(wall), of_beads = droplets + 20;
     EXPECT_EQ(count_at(ids), beads);
     EXPECT_EQ(count_at(of_beads), beads);

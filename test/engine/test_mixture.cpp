@@ -6,6 +6,7 @@
 
 #include "engine/mixture.h"
 #include "engine/simulation.h"
+#include "engine/walls/walls.h"
 #include "refusal.h"
 #include "systems.h"
 
@@ -260,20 +261,23 @@ TEST(Fill, HasTheDensityOfItsLiquidAndLeavesOutWhereSomethingIs) {
   EXPECT_TRUE(holds(refusal([&] { simulation.fill({{0, 0, 0}, {12, 12, 12}, 2}); }), "species 2, allowed"));
 }
 
-TEST(Wall, ShowsTheFirstLiquidTheLawThatTheMixtureGivesItWhateverIsSet) {
+TEST(Wall, OfTheMixturesAttractionIsTheSameEverywhereAndTakesNoContactAngle) {
   Parameters parameters = two_liquids({8, 8, 8}, 40);
   parameters.domain.lower_side[2] = Side::wall;
   parameters.domain.upper_side[2] = Side::reflecting;
   parameters.mixture.pairs.push_back({"wall", "liquid", {15, 0, 3}});
   parameters.mixture.pairs.push_back({"oil", "wall", {15, 0, 3}});
-  const auto hash_after_setting = [&](double angle) {
-    Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
-    simulation.set_wettability([angle](double, double) { return angle; });
-    simulation.fill({{0, 0, 0}, {8, 8, 8}, 0});
-    run(simulation, 20);
-    return *simulation.observe({false, true})->state_hash;
-  };
-  EXPECT_EQ(hash_after_setting(50), hash_after_setting(140));
+  Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  const std::uint64_t before = *simulation.observe({false, true})->state_hash;
+  EXPECT_TRUE(holds(refusal([&] { simulation.set_wettability([](double, double) { return 90.0; }); }),
+                    "attraction is given (15)"));
+  EXPECT_EQ(*simulation.observe({false, true})->state_hash, before);
+  Walls wall(parameters);
+  wall.set_fixed_wettability(parameters, ContactAngleCurve::lan2016());
+  for (const Record& bead : wall.beads()) ASSERT_EQ(bead.w, 15.f);
+  parameters.wall.attraction = 10;
+  EXPECT_TRUE(holds(refusal([&] { Simulation(parameters, ContactAngleCurve::lan2016()); }),
+                    "wall.attraction: 10 beside pairs.liquid.wall"));
 }
 
 TEST(PairTable, ThatIsNotSoundIsRefusedByWhatIsWrong) {

@@ -31,9 +31,8 @@ TEST(BridgePressure, OfABridgeThatIsASphericalZoneIsTheSpheres) {
 }
 
 TEST(Pancake, HasThePressureOfLaplace) {
-  LiquidRun film;
-  film.quick = true;
-  const FilmResult at_rest = run_film(film);
+  // Of a film at rest, by `dmf_study liquid`: a few tau of one leave 4 % of scatter in the tension.
+  const double tension = 7.54, normal_pressure = -0.69;
   PancakeRun run;
   run.radius = 8;
   run.contact_angle = 130;
@@ -41,10 +40,10 @@ TEST(Pancake, HasThePressureOfLaplace) {
   run.measure = 25;
   const auto curve = engine::ContactAngleCurve({{-22, 35, 1}, {-12, 131.76, 0.21}, {-8, 155, 1}});
   const PancakeResult pancake = run_pancake(run, curve);
-  const double expected = at_rest.tension * bridge_pressure(run.gap - 2 * pancake.wall_distance,
-                                                            run.contact_angle, pancake.equator);
+  const double expected =
+      tension * bridge_pressure(run.gap - 2 * pancake.wall_distance, run.contact_angle, pancake.equator);
   // One r_c more or less between the plates would make a fifth.
-  EXPECT_NEAR(pancake.pressure - at_rest.normal_pressure, expected, 0.1 * expected);
+  EXPECT_NEAR(pancake.pressure - normal_pressure, expected, 0.1 * expected);
   EXPECT_NEAR(pancake.equator, run.radius, 1.0);
   EXPECT_GT(pancake.wall_distance, 0);
   EXPECT_LT(pancake.wall_distance, 0.5);
