@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "tools/liquid.h"
 
 namespace dmf::tools {
 namespace {
