@@ -49,12 +49,17 @@ class RunTest(unittest.TestCase):
         listener = Listener("/chip/microparticles", MicroparticleArray)
         frames = Listener("/tf", TFMessage)
         layout = self.chip.get_layout().layout
+        # All before the first step, so that it is the same run every time: one that is called at some moment may pass by.
+        self.chip.pause_physics()
+        self.assertTrue(self.chip.reset().success)
+        self.run_number = self.chip.get_state(False).state.run
         # Just ahead of the droplet's foot, on the pad that calls it.
         reply = self.chip.add_microparticle(x=-4e-5, radius=1e-5, static_friction=0.2, kinetic_friction=0.2,
                                             rolling_friction=0.1)
         self.assertTrue(reply.success, reply.message)
         self.assertTrue(self.chip.set_hv(layout.reference_voltage, 1000, True).success)
         self.assertTrue(self.chip.set_electrodes([1]).success)
+        self.chip.unpause_physics()
         taken = events.wait(lambda e: e.run == self.run_number and e.kind == Event.PICKED_UP, 60)
         self.assertEqual(taken.microparticle, reply.microparticle)
         self.assertEqual(len(taken.after), 1)
