@@ -104,6 +104,7 @@ Scene read_scene(SceneFiles files) {
   scene.units = read_units(root, scene.parameters.liquid, scene.board);
   root.set_units(scene.units);
   read_engine(root, scene.parameters, scene.board);
+  refuse_contact_angles(root, scene.parameters);
   scene.settle_time = root.quantity("settle_time", Dimension::time, Range::at_least(0), 0.0);
   scene.default_duration = root.quantity("duration", Dimension::time, Range::at_least(0), 100.0);
 

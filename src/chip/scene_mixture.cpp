@@ -57,12 +57,16 @@ void read_mixture(const YamlReader& root, engine::Parameters& parameters) {
     }
   }
   read_spline(root, parameters.spline);
-  if (!wall_coefficients(parameters)) return;
+}
+
+void refuse_contact_angles(const YamlReader& root, const engine::Parameters& parameters) {
+  if (!fixed_wall_attraction(parameters)) return;
   for (const char* key : {"wettability", "chip"}) {
     if (root.has(key))
-      root.report(key,
-                  "given together with pairs.liquid.wall, which is the same all over the wall, allowed: one "
-                  "of both");
+      root.report(
+          key,
+          "given together with wall.attraction or pairs.liquid.wall, which is the same all over the wall, "
+          "allowed: one of both");
   }
 }
 

@@ -355,8 +355,6 @@ bool read_chip(const YamlReader& root, Scene& scene) {
   }
   const Domain& domain = scene.parameters.domain;
   if (!domain.has_wall()) chip->report("", "electrodes without a wall, allowed: domain.sides.z: wall");
-  if (scene.parameters.wall.attraction)
-    chip->report("", "electrodes on a wall with wall.attraction, allowed: on a wall without");
   if (scene.parameters.dimensions == 2)
     chip->report("", "electrodes in a scene of two dimensions, allowed: in one of three");
   read_electrowetting(*chip, scene, scene.electrowetting);

@@ -34,7 +34,7 @@ struct PairOfSpecies {
 
 /// Several liquids in one run. Every pair that can meet needs a law: liquids with each other, and, over a
 /// wall, further liquids with the wall. That of the first liquid with the wall may be given too; then all of
-/// the wall shows it, and not what set_wettability() says.
+/// the wall shows it, and takes no contact angles.
 ///
 /// In the many-body density all liquids count alike. So the force has a potential only when B is the same for
 /// all pairs (Warren 2013): notices() says when it is not.

@@ -51,12 +51,6 @@ void for_each_site(const Vector3d& lower, const Vector3d& upper, const Lattice& 
         }
 }
 
-double smallest_periodic(const Domain& domain, int axis, double distance) {
-  return domain.periodic(axis)
-             ? distance - domain.size()[axis] * std::nearbyint(distance / domain.size()[axis])
-             : distance;
-}
-
 void require_species(std::uint32_t species, const Parameters& parameters) {
   if (species > parameters.mixture.liquids.size())
     throw InvalidInput(
@@ -256,9 +250,8 @@ void require_free(const Beads& beads, const std::vector<Vector3d>& sites, const 
   const Vector3d middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
   const double cutoff = parameters.liquid.cutoff_radius;
   for (const Record& record : beads.position) {
-    Vector3d from_middle = Vector3d(record.x, record.y, record.z) - middle;
-    for (int axis = 0; axis < 3; ++axis)
-      from_middle[axis] = smallest_periodic(parameters.domain, axis, from_middle[axis]);
+    const Vector3d from_middle =
+        parameters.domain.nearest_image(Vector3d(record.x, record.y, record.z) - middle);
     if ((from_middle.cwiseAbs().array() > half.array() + cutoff).any()) continue;
     const Vector3d image = middle + from_middle;
     for (const Vector3d& site : sites)

@@ -78,8 +78,9 @@ TEST(BoundaryScene, WhatDoesNotGoTogetherIsToldWithItsKey) {
       holds(refused(domain + "boundaries: {x: symmetric}"), "boundaries.lower_x: symmetric beside a wall"));
   EXPECT_TRUE(holds(refused(domain + "dimensions: 5"), "dimensions: 5, allowed: 2 or 3"));
   const std::string chip = "chip: {gap: 1, grids: [{origin: [2, 2], columns: 1, rows: 1, pitch: 6}]}\n";
-  EXPECT_TRUE(
-      holds(refused(domain + chip + "wall: {attraction: -20}"), "electrodes on a wall with wall.attraction"));
+  for (const std::string& angles : {chip, std::string("wettability: {rest_angle: 110}\n")})
+    EXPECT_TRUE(
+        holds(refused(domain + angles + "wall: {attraction: -20}"), "given together with wall.attraction"));
   EXPECT_TRUE(holds(refused(domain + chip + "dimensions: 2"), "electrodes in a scene of two dimensions"));
   EXPECT_TRUE(holds(refused(domain + "wall: {attraction: -20}\n"
                                      "wettability: {program: {positions: [0], contact_angles: [90]}}"),

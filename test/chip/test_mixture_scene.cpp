@@ -96,7 +96,7 @@ fills: [{}]
   command.contact_angles_deg = {90};
   EXPECT_TRUE(holds(experiment.apply(command).message, "pairs.liquid.wall"));
   EXPECT_TRUE(holds(refusal([&] { parsed(plain + "wettability: {rest_angle: 90}"); }),
-                    "wettability: given together with pairs.liquid.wall"));
+                    "wettability: given together with wall.attraction or pairs.liquid.wall"));
 }
 
 TEST(MixtureScene, ThatIsNotSoundIsRefusedByKeyAndLine) {
