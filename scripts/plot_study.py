@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Figure of one of `dmf_study`'s studies of microparticles, or of transport_velocity, poiseuille, square_channel, structured_wall or
-infiltration, from the CSV files that it leaves.
+"""Figure of one of `dmf_study`'s studies, from the CSV files that it leaves.
 
     scripts/plot_study.py pickup_size FOLDER            # writes FOLDER/pickup_size.png
     scripts/plot_study.py inner_flow FOLDER flow.png
 
-Every run is drawn as far as it has come; Lan's numbers are marked where the study knows them.
+Runs of microparticles are drawn as far as they have come. What has no figure of its own shows its findings: a panel a
+quantity, with the paper's numbers and theory where they are known.
 """
 import csv
 import glob
@@ -64,20 +64,28 @@ def runs_of(folder, name, prefix):
             for value in sorted(found, key=lambda value: (re.sub(r"[-\d.]+", "", value), numbers(value)))}
 
 
-def summary_of(folder, name):
-    """{(value as in file names, quantity): (mean, deviation, Lan's number or NaN)}, in the file's order."""
+def number(text):
+    """Of a reference: NaN where it is none."""
+    try:
+        return float(text.removeprefix("about "))
+    except ValueError:
+        return math.nan
+
+
+def findings_of(folder, name):
+    """What NAME.csv holds: a list of {case, quantity, mean, standard_deviation, paper, theory, title}, numbers as such."""
     path = os.path.join(folder, name + ".csv")
-    summary = {}
-    if os.path.exists(path):
-        with open(path, newline="") as file:
-            for row in csv.DictReader(file):
-                try:
-                    lan = float(row["lan"])
-                except ValueError:
-                    lan = math.nan
-                summary[as_file_name(row["value"]), row["quantity"]] = (
-                    float(row["mean"]), float(row["standard_deviation"]), lan)
-    return summary
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="") as file:
+        return [{**row, **{key: number(row[key]) for key in ("mean", "standard_deviation", "paper", "theory")}}
+                for row in csv.DictReader(file)]
+
+
+def summary_of(folder, name):
+    """{(value as in file names, quantity): (mean, deviation, the paper's number or NaN)}, in the file's order."""
+    return {(as_file_name(row["case"] or "scene"), row["quantity"]):
+            (row["mean"], row["standard_deviation"], row["paper"]) for row in findings_of(folder, name)}
 
 
 def from_zero(axis, values):
@@ -150,10 +158,10 @@ def plot_transport(folder, name):
 
 def plot_forces(folder):
     rows = {}
-    with open(os.path.join(folder, "forces.csv"), newline="") as file:
-        for row in csv.DictReader(file):
-            rows.setdefault(row["f_s"], {}).setdefault(row["quantity"], []).append(
-                (float(row["x"]), float(row["mean"]), float(row["standard_deviation"])))
+    for row in findings_of(folder, "forces"):
+        friction, x = re.fullmatch(r"f=([^/]*)/\S+ x=(\S+).*", row["case"]).groups()
+        rows.setdefault(friction, {}).setdefault(row["quantity"], []).append(
+            (float(x), row["mean"], row["standard_deviation"]))
     figure, axes = plt.subplots(1, len(rows), figsize=(4 * len(rows), 4), constrained_layout=True, squeeze=False)
     for axis, (static_friction, quantities) in zip(axes.flat, rows.items()):
         velocity = axis.twinx()
@@ -217,23 +225,6 @@ def plot_inner_flow(folder):
     return figure
 
 
-def plot_transport_velocity(folder):
-    """Velocity over voltage beside what the electrowetting number alone would make of it: V^2 - V_T^2, cut off where the
-    angle saturates."""
-    table = columns_of(os.path.join(folder, "transport_velocity.csv"))
-    figure, axis = plt.subplots(figsize=(6.4, 4.2), constrained_layout=True)
-    axis.errorbar(table["voltage"], table["velocity"], yerr=table["standard_deviation"], fmt="o", capsize=3, label="measured")
-    angle = np.radians(table["contact_angle_deg"])
-    number = np.cos(angle) - np.cos(angle[0])
-    law = number * table["velocity"].max() / number.max()
-    axis.plot(table["voltage"], law, color="tab:gray", label=r"$\propto V^2 - V_T^2$, up to saturation")
-    axis.set_xlabel("voltage (V rms)")
-    axis.set_ylabel(r"velocity ($r_c/\tau$)")
-    axis.set_ylim(bottom=0)
-    axis.legend()
-    return figure
-
-
 def plot_poiseuille(folder):
     """Velocity across the channel with the parabola through its middle, density and temperature, of every kind of wall."""
     figure, (flow, density, temperature) = plt.subplots(1, 3, figsize=(12, 4.2), constrained_layout=True)
@@ -278,7 +269,7 @@ def plot_square_channel(folder):
 
 def plot_structured_wall(folder):
     """Front and advancing angle over time of every driven run."""
-    paths = sorted(path for path in glob.glob(os.path.join(folder, "structured_wall_*_seed=*.csv")))
+    paths = sorted(path for path in glob.glob(os.path.join(folder, "structured_wall_*_seed*.csv")))
     if not paths:
         sys.exit("%s: no driven run of structured_wall" % folder)
     figure, (front, angle) = plt.subplots(2, 1, figsize=(8, 7), constrained_layout=True, sharex=True)
@@ -296,7 +287,7 @@ def plot_structured_wall(folder):
 
 def plot_infiltration(folder):
     """Share of the pore space that is filled, over time."""
-    paths = sorted(glob.glob(os.path.join(folder, "infiltration_*_seed=*.csv")))
+    paths = sorted(glob.glob(os.path.join(folder, "infiltration_*_seed*.csv")))
     if not paths:
         sys.exit("%s: no run of infiltration" % folder)
     figure, axis = plt.subplots(figsize=(7, 4.5), constrained_layout=True)
@@ -310,7 +301,63 @@ def plot_infiltration(folder):
     return figure
 
 
+def place_of(case):
+    """A case as a series and a place in it: "gap=4 angle=70" is 70 of "gap=4", by "angle"."""
+    words = case.split()
+    name, _, value = words[-1].partition("=") if words else ("", "", "")
+    return (" ".join(words[:-1]), name, number(value)) if value and math.isfinite(number(value)) else (case, "", math.nan)
+
+
+def plot_findings(folder, name):
+    """A panel a quantity: ours with spread over what is varied, the paper's numbers as stars, theory as lines."""
+    panels = {}
+    for row in findings_of(folder, name):
+        if math.isfinite(row["mean"]):
+            panels.setdefault((row["quantity"], row["title"]), []).append(row)
+    # One number on its own says nothing in a figure.
+    panels = {key: rows for key, rows in panels.items() if len(rows) > 1}
+    if not panels:
+        sys.exit("%s: %s.csv holds nothing to draw" % (folder, name))
+    columns = min(3, len(panels))
+    rows = -(-len(panels) // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.6 * columns, 3.4 * rows), constrained_layout=True, squeeze=False)
+    for axis in axes.flat[len(panels):]:
+        axis.remove()
+    for axis, ((_, title), found) in zip(axes.flat, panels.items()):
+        series = {}
+        for row in found:
+            label, axis_name, place = place_of(row["case"])
+            series.setdefault((label, axis_name), []).append((place, row))
+        names = []
+        for index, ((label, axis_name), points) in enumerate(series.items()):
+            if not all(math.isfinite(place) for place, _ in points):
+                points = [(len(names), row) for _, row in points]
+                names.append(label)
+                axis.set_xticks(range(len(names)), names, rotation=30, ha="right", fontsize=7)
+                label = None
+            else:
+                points.sort(key=lambda point: point[0])
+                axis.set_xlabel(axis_name)
+                label = label or axis_name if len(series) > 1 else "here"
+            colour = "C%d" % (index % 10)
+            place = [point[0] for point in points]
+            values = {key: np.array([row[key] for _, row in points])
+                      for key in ("mean", "standard_deviation", "paper", "theory")}
+            axis.errorbar(place, values["mean"], yerr=values["standard_deviation"], fmt="o", markersize=4, capsize=3,
+                          color=colour, label=label)
+            axis.plot(place, values["paper"], "*", color=colour, markeredgecolor="black", markersize=10)
+            axis.plot(place, values["theory"], "_" if len(place) == 1 else "-", color=colour, linewidth=0.8)
+        axis.set_title(title, fontsize=9)
+        axis.grid(alpha=0.3)
+        if not names:
+            axis.legend(fontsize=7)
+    figure.suptitle("%s: dots ours, stars the paper's, lines theory" % name, fontsize=10)
+    return figure
+
+
 FIGURES = {
+    "forces": plot_forces,
+    "inner_flow": plot_inner_flow,
     "poiseuille": plot_poiseuille,
     "square_channel": plot_square_channel,
     "structured_wall": plot_structured_wall,
@@ -321,17 +368,10 @@ FIGURES = {
 def main(name, folder, target=None):
     if name in TRANSPORT:
         figure = plot_transport(folder, name)
-    elif name == "forces":
-        figure = plot_forces(folder)
-    elif name == "inner_flow":
-        figure = plot_inner_flow(folder)
-    elif name == "transport_velocity":
-        figure = plot_transport_velocity(folder)
     elif name in FIGURES:
         figure = FIGURES[name](folder)
     else:
-        known = [*TRANSPORT, "forces", "inner_flow", "transport_velocity", *FIGURES]
-        sys.exit("%s: no such study, allowed: %s" % (name, ", ".join(known)))
+        figure = plot_findings(folder, name)
     figure.savefig(target or os.path.join(folder, name + ".png"), dpi=110)
 
 

@@ -3,54 +3,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <thread>
+#include <stdexcept>
 
 #include "chip/configuration.h"
-#include "engine/simulation.h"
+#include "tools/saved_run.h"
 
 namespace dmf::tools {
 
-MeanAndSpread mean_and_spread(const std::vector<double>& values) {
-  MeanAndSpread result;
-  const double count = static_cast<double>(values.size());
-  for (const double value : values) result.mean += value / count;
-  if (values.size() < 2) return result;
-  double squares = 0;
-  for (const double value : values) squares += (value - result.mean) * (value - result.mean);
-  result.deviation = std::sqrt(squares / (count - 1));
-  result.standard_error = result.deviation / std::sqrt(count);
-  return result;
-}
-
-std::string integrator_key(engine::Integrator integrator) {
-  return integrator == engine::Integrator::baoab ? " baoab" : "";
+void apply(const StudyOptions& options, engine::Parameters& parameters) {
+  if (options.time_step > 0) parameters.time_step = options.time_step;
+  if (options.integrator) parameters.integrator = *options.integrator;
+  if (options.list_skin > 0) parameters.list_skin = options.list_skin;
+  if (options.lambda > 0) parameters.integrator_lambda = options.lambda;
 }
 
 chip::Scene scene_for(const StudyOptions& options, const std::string& name) {
   chip::Scene scene = chip::load_scene(name);
-  scene.parameters.time_step = options.time_step;
-  scene.parameters.integrator = options.integrator;
-  if (options.list_skin > 0) scene.parameters.list_skin = options.list_skin;
-  if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
+  apply(options, scene.parameters);
   scene.parameters.microparticles.contact = options.contact;
   scene.calibration_file =
       options.calibration == "lan2016" ? "" : chip::find_config("calibration", options.calibration);
   return scene;
 }
 
+engine::ContactAngleCurve curve_for(const StudyOptions& options) {
+  return options.calibration == "lan2016"
+             ? engine::ContactAngleCurve::lan2016()
+             : engine::ContactAngleCurve::load(chip::find_config("calibration", options.calibration));
+}
+
 std::string options_key(const StudyOptions& options) {
   const StudyOptions usual;
   std::string key;
-  if (options.time_step != usual.time_step) key += fmt::format(" dt={}", options.time_step);
-  key += integrator_key(options.integrator);
+  if (options.radius > 0) key += fmt::format(" R={}", options.radius);
+  if (options.time_step > 0) key += fmt::format(" dt={}", options.time_step);
+  if (options.integrator)
+    key += *options.integrator == engine::Integrator::baoab ? " baoab" : " groot_warren";
   if (options.lambda > 0) key += fmt::format(" lambda={}", options.lambda);
   if (options.calibration != usual.calibration) {
     const std::string name = std::filesystem::path(options.calibration).stem().string();
@@ -71,101 +60,75 @@ void shorten_the_approach(chip::Scene& scene) {
   droplet.center.x() = first - droplet.radius - 1;
 }
 
+namespace {
+
+/// "R=5" is called by its whole name or by its value.
+bool names(const std::string& said, const std::string& label) {
+  return said == label || (label.size() > said.size() &&
+                           label.compare(label.size() - said.size() - 1, std::string::npos, "=" + said) == 0);
+}
+
+}  // namespace
+
 bool is_wanted(const StudyOptions& options, const std::string& label) {
-  return options.only.empty() ||
-         std::find(options.only.begin(), options.only.end(), label) != options.only.end();
+  return options.only.empty() || std::any_of(options.only.begin(), options.only.end(),
+                                             [&](const std::string& said) { return names(said, label); });
 }
 
 void require_known(const StudyOptions& options, const std::vector<std::string>& labels) {
-  for (const std::string& label : options.only)
-    if (std::find(labels.begin(), labels.end(), label) == labels.end())
-      throw std::runtime_error(fmt::format("--only: {}, allowed: {}", label, fmt::join(labels, ", ")));
+  for (const std::string& said : options.only)
+    if (std::none_of(labels.begin(), labels.end(),
+                     [&](const std::string& label) { return names(said, label); }))
+      throw std::runtime_error(fmt::format("--only: {}, allowed: {}", said, fmt::join(labels, ", ")));
 }
 
-ResultTable::ResultTable(const std::string& file, std::vector<std::string> columns) : file_(file) {
-  const std::string header = fmt::format("run,{}", fmt::join(columns, ","));
-  if (const auto folder = std::filesystem::path(file).parent_path(); !folder.empty())
-    std::filesystem::create_directories(folder);
-  std::ifstream in(file);
-  std::string line;
-  if (!std::getline(in, line)) {
-    std::ofstream(file) << header << "\n";
-    return;
-  }
-  if (line != header) throw std::runtime_error(fmt::format("{}: holds other results; move it away", file));
-  while (std::getline(in, line)) {
-    std::istringstream fields(line);
-    std::string key, field;
-    std::getline(fields, key, ',');
-    std::vector<double> values;
-    while (std::getline(fields, field, ',')) values.push_back(std::strtod(field.c_str(), nullptr));
-    // The last line of a killed study may be cut: it is done again.
-    if (values.size() == columns.size()) rows_[key] = values;
-  }
+StudyOptions without_only(StudyOptions options) {
+  options.only.clear();
+  return options;
 }
 
-bool ResultTable::has(const std::string& key) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return rows_.count(key) > 0;
+const std::vector<Study>& all_studies() {
+  static const std::vector<Study> all = [] {
+    std::vector<Study> studies{
+        {"liquid", "temperature, density, surface tension, viscosity", study_liquid},
+        {"contact_angle", "wall attraction -> contact angle; writes calibration.yaml", study_contact_angle},
+        {"commanded_angle", "commanded against shown angle, through the calibration", study_commanded_angle},
+        {"crossing", "a droplet on a wettability gradient, time against Lan's", study_crossing},
+        {"dpd_liquid", "plain DPD: viscosity, diffusivity, Schmidt number against kinetic theory",
+         study_dpd_liquid},
+        {"equation_of_state", "pressure against density, with a van der Waals fit", study_equation_of_state},
+        {"interfacial_tension", "two liquids that don't mix, against Chen's value and Groot and Warren's fit",
+         study_interfacial_tension},
+        {"poiseuille", "plain DPD in a channel, 3D and 2D, against Lan's and the parabola", study_poiseuille},
+        {"square_channel", "plain DPD along a square channel against the series, mass flow against Chen's",
+         study_square_channel},
+        {"structured_wall", "a droplet on ridges: angle against Cassie-Baxter, front, velocity over spacing",
+         study_structured_wall},
+        {"infiltration", "liquid that goes into a slit or between grains, by itself or pushed",
+         study_infiltration},
+        {"chain", "chains: random walks, relaxation, good solvent, pulled, in a channel", study_chain},
+        {"membrane", "membranes: what they keep, what leaks, a deflated sphere, a red cell", study_membrane},
+        {"plates", "pressure of a droplet between two plates against Laplace's, and what it keeps off",
+         study_plates},
+        {"splitting", "between two plates: up to which gap over pitch a droplet splits", study_splitting},
+        {"transport_velocity", "how fast a droplet moves along electrodes under what voltage",
+         study_transport_velocity},
+        {"protocols", "success rate of the controller's protocols, with faults too", study_protocols},
+        {"time_step", "every observable against the time step, both integrators; cost of a tau",
+         study_time_step, false},
+        {"microparticle_angle", "attraction -> contact angle, floating in a film; writes microparticle.yaml",
+         study_microparticle_angle}};
+    for (const Study& study : transport_studies()) studies.push_back(study);
+    studies.push_back({"forces", "drive, friction and velocity of a microparticle at places of the gradient",
+                       study_forces});
+    studies.push_back({"inner_flow", "flow of the liquid around a microparticle", study_inner_flow});
+    return studies;
+  }();
+  return all;
 }
 
-const std::vector<double>& ResultTable::row(const std::string& key) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return rows_.at(key);
-}
-
-void ResultTable::add(const std::string& key, const std::vector<double>& values) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  rows_[key] = values;
-  std::ofstream(file_, std::ios::app) << key << "," << fmt::format("{:.10g}", fmt::join(values, ",")) << "\n";
-}
-
-void run_jobs(const std::string& title, const std::vector<Job>& jobs, const StudyOptions& options,
-              ResultTable& table) {
-  std::vector<const Job*> missing;
-  for (const Job& job : jobs)
-    if (!table.has(job.key)) missing.push_back(&job);
-  fmt::print(stderr, "{}: {} runs, {} of them done before\n", title, jobs.size(),
-             jobs.size() - missing.size());
-
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto start = std::chrono::steady_clock::now();
-  const auto worker = [&] {
-    for (std::size_t k = next++; k < missing.size(); k = next++) {
-      try {
-        table.add(missing[k]->key, missing[k]->work());
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = missing.size();
-        return;
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++done;
-      const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      fmt::print(stderr, "{}: {} of {} done, {:.0f} s, about {:.0f} s left ({})\n", title, done,
-                 missing.size(), elapsed,
-                 elapsed / static_cast<double>(done) * static_cast<double>(missing.size() - done),
-                 missing[k]->key);
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int k = 0; k < options.jobs; ++k) threads.emplace_back(worker);
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
-}
-
-std::vector<double> row_or_nan(const std::string& key, std::size_t columns,
-                               const std::function<std::vector<double>()>& work) {
-  try {
-    return work();
-  } catch (const engine::Instability& problem) {
-    fmt::print(stderr, "{}: {}\n", key, problem.what());
-    return std::vector<double>(columns, NAN);
-  }
+void write_findings(const std::string& study, const Findings& findings, const StudyOptions& options) {
+  replace_file(fmt::format("{}/{}.csv", options.output, study), as_csv(findings));
 }
 
 }  // namespace dmf::tools

@@ -12,22 +12,21 @@ namespace {
 TEST(Droplet, ShowsTheCommandedAngleWithinThreeDegrees) {
   const engine::ContactAngleCurve curve =
       engine::ContactAngleCurve::load(chip::find_config("calibration", "water_like"));
-  ResultTable table(fresh_table("contact_angle"), {"angle"});
-  std::vector<Job> jobs;
-  const auto key = [](double angle, int seed) { return fmt::format("{} seed {}", angle, seed); };
   const double angles[] = {50, 70, 90, 110, 130, 145};
+  const auto label = [](double angle) { return fmt::format("angle={}", angle); };
+  std::vector<Case> cases;
   for (const double angle : angles)
-    for (const int seed : {201, 202})
-      jobs.push_back({key(angle, seed), [=, &curve] {
-                        SessileRun run;
-                        run.attraction = curve.attraction(angle);
-                        run.starting_angle = angle;
-                        run.seed = static_cast<std::uint64_t>(seed);
-                        return std::vector<double>{run_sessile(run).angle};
-                      }});
-  run_jobs("contact angle", jobs, two_at_a_time(), table);
+    cases.push_back({label(angle), [=, &curve](std::uint64_t seed) {
+                       SessileRun run;
+                       run.attraction = curve.attraction(angle);
+                       run.starting_angle = angle;
+                       run.seed = seed;
+                       return std::vector<double>{run_sessile(run).angle};
+                     }});
+  const Results results =
+      run_cases("contact_angle", {"angle"}, cases, two_at_a_time("contact_angle", 2), 201);
   for (const double angle : angles) {
-    const double shown = 0.5 * (table.row(key(angle, 201))[0] + table.row(key(angle, 202))[0]);
+    const double shown = results.mean(label(angle), "angle").mean;
     EXPECT_NEAR(shown, angle, 3.0);
     RecordProperty(fmt::format("shown_at_{}", angle), fmt::format("{:.2f}", shown));
   }

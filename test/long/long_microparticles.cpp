@@ -14,23 +14,21 @@ namespace {
 /// (docs/validation.md): those that did are left out.
 std::vector<Trajectory> trajectories(const std::string& name, const chip::Scene& scene, int seeds,
                                      double goal, double limit) {
-  const std::string folder = fresh_table(name) + ".runs";
-  std::filesystem::remove_all(folder);
+  const StudyOptions options = two_at_a_time(name, seeds);
+  constexpr int first_seed = 401;
   std::vector<std::vector<TransportRecord>> records(static_cast<std::size_t>(seeds));
-  ResultTable table(fresh_table(name), {"done"});
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= seeds; ++seed)
-    jobs.push_back({fmt::format("seed {}", seed), [&, seed] {
-                      TransportRun run;
-                      run.goal = goal;
-                      run.limit = limit;
-                      run.folder = folder;
-                      run.key = fmt::format("seed{}", seed);
-                      records[static_cast<std::size_t>(seed - 1)] =
-                          run_transport(scene, static_cast<std::uint64_t>(400 + seed), run).records;
-                      return std::vector<double>{1};
-                    }});
-  run_jobs(name, jobs, two_at_a_time(), table);
+  run_cases(name, {"done"},
+            {{"",
+              [&](std::uint64_t seed) {
+                TransportRun run;
+                run.goal = goal;
+                run.limit = limit;
+                run.folder = options.output + "/runs";
+                run.key = fmt::format("seed{}", seed);
+                records[seed - first_seed] = run_transport(scene, seed, run).records;
+                return std::vector<double>{1};
+              }}},
+            options, first_seed);
   std::vector<Trajectory> found;
   for (const auto& one : records) {
     const Trajectory trajectory(one, 1);

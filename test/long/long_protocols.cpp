@@ -9,33 +9,25 @@ namespace {
 
 TEST(Protocols, WorkOnFullResolutionOverSeeds) {
   const auto trials = protocol_trials(false);
-  const int seeds[] = {1, 2};
-  ResultTable table(fresh_table("protocols"), {"worked"});
-  const auto key = [](const ProtocolTrial& trial, int seed) {
-    return fmt::format("{} seed={}", trial.name, seed);
-  };
-  std::vector<Job> jobs;
-  for (const ProtocolTrial& trial : trials) {
-    for (const int seed : seeds) {
-      jobs.push_back({key(trial, seed), [&trial, seed, &key] {
-                        const TrialResult result = run_trial(trial, static_cast<std::uint64_t>(seed));
-                        if (!result.worked)
-                          fmt::print(stderr, "{}: {}\n", key(trial, seed), describe(trial, result));
-                        return std::vector<double>{static_cast<double>(result.worked)};
-                      }});
-    }
-  }
-  run_jobs("protocols", jobs, two_at_a_time(), table);
+  constexpr int seeds = 2;
+  std::vector<Case> cases;
+  for (const ProtocolTrial& trial : trials)
+    cases.push_back({trial.name, [&trial](std::uint64_t seed) {
+                       const TrialResult result = run_trial(trial, seed);
+                       if (!result.worked)
+                         fmt::print(stderr, "{} seed={}: {}\n", trial.name, seed, describe(trial, result));
+                       return std::vector<double>{static_cast<double>(result.worked)};
+                     }});
+  const Results results = run_cases("protocols", {"worked"}, cases, two_at_a_time("protocols", seeds));
   double all = 0;
   for (const ProtocolTrial& trial : trials) {
-    double worked = 0;
-    for (const int seed : seeds) worked += table.row(key(trial, seed))[0];
+    const double worked = seeds * results.mean(trial.name, "worked").mean;
     EXPECT_GT(worked, 0) << trial.name << " has worked with no seed";
     all += worked;
   }
   // All worked when this was written (docs/validation.md). A droplet that is let go between two electrodes
   // may need more tries than a protocol has: seldom.
-  EXPECT_GE(all, 0.9 * static_cast<double>(trials.size() * std::size(seeds)));
+  EXPECT_GE(all, 0.9 * static_cast<double>(trials.size() * seeds));
 }
 
 }  // namespace

@@ -4,20 +4,17 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/study.h"
+#include "tools/cases.h"
 
 namespace dmf::tools {
 
-/// A study's table in a folder of its own that starts empty.
-inline std::string fresh_table(const std::string& name) {
-  const std::string file = testing::TempDir() + "dmf_long_" + name + ".csv";
-  std::filesystem::remove(file);
-  return file;
-}
-
-inline StudyOptions two_at_a_time() {
+/// Two runs at a time, into a folder of the test's own that starts empty.
+inline StudyOptions two_at_a_time(const std::string& name, int seeds) {
   StudyOptions options;
   options.jobs = 2;
+  options.seeds = seeds;
+  options.output = testing::TempDir() + "dmf_long_" + name;
+  std::filesystem::remove_all(options.output);
   return options;
 }
 

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <vector>
 
+#include "tools/cases.h"
 #include "tools/chain_run.h"
-#include "tools/study.h"
 
 namespace dmf::tools {
 namespace {
 
 constexpr double gamma_of_study = 4.5;  // of a random amplitude of 3 at k_BT = 1
 
-struct Case {
+struct Chains {
   std::string kind;  ///< ideal, solvent, pulled, channel
   double value;      ///< beads; beads; force; gravity
 
@@ -34,11 +34,20 @@ engine::Spring wlc_spring() {
   return spring;
 }
 
-ChainRun run_of(const Case& one, const StudyOptions& options, int seed) {
+std::vector<Chains> all_chains() {
+  std::vector<Chains> all;
+  for (const double beads : {5, 10, 20, 30}) all.push_back({"ideal", beads});
+  for (const double beads : {5, 8, 13, 20}) all.push_back({"solvent", beads});
+  for (const double force : {1, 3, 10, 20, 40}) all.push_back({"pulled", force});
+  for (const double gravity : {0.0, 0.02, 0.05}) all.push_back({"channel", gravity});
+  return all;
+}
+
+ChainRun run_of(const Chains& one, const StudyOptions& options, std::uint64_t seed) {
   ChainRun run;
-  run.seed = static_cast<std::uint64_t>(seed);
-  run.time_step = options.time_step;
-  run.integrator = options.integrator;
+  run.seed = seed;
+  run.time_step = options.time_step_or(run.time_step);
+  run.integrator = options.integrator.value_or(run.integrator);
   run.spring = one.kind == "ideal" || one.kind == "solvent" ? harmonic_spring() : wlc_spring();
   if (one.kind == "ideal") {
     run.beads = static_cast<std::uint32_t>(one.value);
@@ -91,117 +100,96 @@ double marko_siggia_extension(double force, double persistence_length) {
 
 }  // namespace
 
-void study_chain(const StudyOptions& options) {
+Findings study_chain(const StudyOptions& options) {
+  const std::vector<Chains> all = all_chains();
   std::vector<Case> cases;
-  for (const double beads : {5, 10, 20, 30}) cases.push_back({"ideal", beads});
-  for (const double beads : {5, 8, 13, 20}) cases.push_back({"solvent", beads});
-  for (const double force : {1, 3, 10, 20, 40}) cases.push_back({"pulled", force});
-  for (const double gravity : {0.0, 0.02, 0.05}) cases.push_back({"channel", gravity});
-  std::vector<std::string> labels;
-  for (const Case& one : cases) labels.push_back(one.label());
-  require_known(options, labels);
-
-  ResultTable table(options.output + "/chain_runs.csv",
-                    {"end_to_end_square", "gyration_square", "bond_square", "extension", "stretch_square",
-                     "relaxation", "off_centre", "temperature", "speed"});
-  const auto key = [&](const Case& one, int seed) {
-    return fmt::format("{}{} seed={}", one.label(), options_key(options), seed);
+  for (const Chains& one : all)
+    cases.push_back({one.label(), [=](std::uint64_t seed) {
+                       const ChainResult r = run_chains(run_of(one, options, seed));
+                       return std::vector<double>{r.end_to_end_square, r.gyration_square, r.bond_square,
+                                                  r.extension,         r.stretch_square,  r.relaxation,
+                                                  r.off_centre,        r.temperature,     r.speed};
+                     }});
+  const Results results = run_cases("chain",
+                                    {"end_to_end_square", "gyration_square", "bond_square", "extension",
+                                     "stretch_square", "relaxation", "off_centre", "temperature", "speed"},
+                                    cases, options);
+  // One column of a case over a number, a finding.
+  const auto over = [&](const Chains& one, const char* column, double unit, const std::string& title,
+                        int decimals) {
+    std::vector<double> values = results.of(one.label(), column);
+    for (double& value : values) value /= unit;
+    return results.derived(one.label(), column, title, decimals, values);
   };
-  std::vector<Job> jobs;
-  for (const Case& one : cases) {
-    if (!is_wanted(options, one.label())) continue;
-    for (int seed = 1; seed <= options.seeds; ++seed)
-      jobs.push_back({key(one, seed), [=] {
-                        const ChainResult r = run_chains(run_of(one, options, seed));
-                        return std::vector<double>{r.end_to_end_square, r.gyration_square, r.bond_square,
-                                                   r.extension,         r.stretch_square,  r.relaxation,
-                                                   r.off_centre,        r.temperature,     r.speed};
-                      }});
-  }
-  run_jobs("chain", jobs, options, table);
-
-  const auto mean = [&](const Case& one, int column) {
-    std::vector<double> values;
-    for (int seed = 1; seed <= options.seeds; ++seed) values.push_back(table.row(key(one, seed))[column]);
-    return mean_and_spread(values);
-  };
-  // Slope of ln(value) over ln(beads), least squares.
-  const auto exponent = [&](const std::string& kind, int column, auto of_beads) {
+  // Slope of ln(column) over ln(of_beads), least squares over the cases of a kind.
+  const auto exponent = [&](const std::string& kind, const char* column, double beads_less) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const Case& one : cases) {
-      if (one.kind != kind || !is_wanted(options, one.label())) continue;
-      const double a = std::log(of_beads(one.value)), b = std::log(mean(one, column).mean);
+    for (const Chains& one : all) {
+      if (one.kind != kind || results.of(one.label(), column).empty()) continue;
+      const double a = std::log(one.value - beads_less), b = std::log(results.mean(one.label(), column).mean);
       n += 1, x += a, y += b, xx += a * a, xy += a * b;
     }
-    return (n * xy - x * y) / (n * xx - x * x);
-  };
-  const auto wanted = [&](const std::string& kind) {
-    int count = 0;
-    for (const Case& one : cases) count += one.kind == kind && is_wanted(options, one.label());
-    return count;
+    return n > 1 ? std::vector<double>{(n * xy - x * y) / (n * xx - x * x)} : std::vector<double>{};
   };
 
-  if (wanted("ideal") > 0)
-    fmt::print(
-        "ideal chains in a melt of their own: <R^2> / ((N - 1) <b^2>), <R_g^2> likewise, and the time "
-        "of the end-to-end vector against Rouse's\n");
-  for (const Case& one : cases) {
-    if (one.kind != "ideal" || !is_wanted(options, one.label())) continue;
-    const double bond = thermal_square(engine::SpringLaw::of(harmonic_spring(), 1), 1), n = one.value;
-    const MeanAndSpread r2 = mean(one, 0), g2 = mean(one, 1), b2 = mean(one, 2), time = mean(one, 5);
-    const double rouse = rouse_time(static_cast<std::uint32_t>(n), bond, gamma_of_study, 3, 1);
-    fmt::print(
-        "N {:>3g}: R^2 {:.3f} +- {:.3f}, R_g^2 {:.3f} +- {:.3f}, <b^2> {:.4f} (theory {:.4f}), time {:.3g} "
-        "+- "
-        "{:.1g} (Rouse {:.3g})\n",
-        n, r2.mean / ((n - 1) * bond), r2.deviation / ((n - 1) * bond),
-        g2.mean / (bond * (n * n - 1) / (6 * n)), g2.deviation / (bond * (n * n - 1) / (6 * n)), b2.mean,
-        bond, time.mean, time.deviation, rouse);
-  }
-  if (wanted("ideal") > 1)
-    fmt::print(
-        "time goes with N^{:.2f} (Rouse 2, Zimm 1.5: liquid that keeps its momentum drags beads along)\n",
-        exponent("ideal", 5, [](double n) { return n; }));
-
-  if (wanted("solvent") > 1) {
-    fmt::print("chains in a good solvent (plain DPD, a = 25 for all):\n");
-    for (const Case& one : cases) {
-      if (one.kind != "solvent" || !is_wanted(options, one.label())) continue;
-      const MeanAndSpread r2 = mean(one, 0), g2 = mean(one, 1);
-      fmt::print("N {:>3g}: R^2 {:.3f} +- {:.3f}, R_g^2 {:.3f} +- {:.3f}, temperature {:.4f}\n", one.value,
-                 r2.mean, r2.deviation, g2.mean, g2.deviation, mean(one, 7).mean);
+  Findings findings;
+  for (const Chains& one : all) {
+    const std::string label = one.label();
+    if (one.kind == "ideal") {
+      const double bond = thermal_square(engine::SpringLaw::of(harmonic_spring(), 1), 1), n = one.value;
+      const double rouse = rouse_time(static_cast<std::uint32_t>(n), bond, gamma_of_study, 3, 1);
+      findings.push_back(over(one, "bond_square", 1, "<b^2> (r_c^2)", 4)
+                             .against_theory(reference(bond, 4, "Boltzmann"))
+                             .within(0.01));
+      findings.push_back(over(one, "end_to_end_square", (n - 1) * bond, "<R^2> / ((N - 1) <b^2>)", 3)
+                             .against_theory({"1", "random walk"}));
+      findings.push_back(
+          over(one, "gyration_square", bond * (n * n - 1) / (6 * n), "6 N <R_g^2> / ((N^2 - 1) <b^2>)", 3)
+              .against_theory({"1", "random walk"}));
+      findings.push_back(over(one, "relaxation", 1, "time of the end-to-end vector (tau)", 2)
+                             .against_theory(reference(rouse, 2, "Rouse, friction of a mean field")));
+    } else if (one.kind == "solvent") {
+      findings.push_back(over(one, "end_to_end_square", 1, "<R^2> in a good solvent (r_c^2)", 3));
+      findings.push_back(over(one, "gyration_square", 1, "<R_g^2> in a good solvent (r_c^2)", 3));
+      findings.push_back(over(one, "temperature", 1, "temperature (k_BT)", 4));
+    } else if (one.kind == "pulled") {
+      const engine::Spring spring = wlc_spring();
+      const double contour = 10 * spring.max_length;
+      findings.push_back(
+          over(one, "extension", contour, "extension of the contour length", 4)
+              .against_theory(reference(
+                  thermal_extension(engine::SpringLaw::of(spring, 1), 1, one.value) / spring.max_length, 4,
+                  "partition function of a bond"))
+              .within(0.01));
+      findings.push_back(
+          results
+              .derived(label, "marko_siggia", "the same beside one worm-like chain", 4,
+                       over(one, "extension", contour, "", 4).values)
+              .against_theory(reference(marko_siggia_extension(one.value, spring.persistence_length), 4,
+                                        "Marko and Siggia")));
+    } else {
+      findings.push_back(over(one, "speed", 1, "speed (r_c/tau)", 3));
+      findings.push_back(over(one, "stretch_square", 1, "<R_x^2> along the flow (r_c^2)", 2));
+      findings.push_back(over(one, "end_to_end_square", 1, "<R^2> (r_c^2)", 2));
+      findings.push_back(
+          over(one, "off_centre", 1, "|z| of half the height", 3).against_theory({"0.5", "even"}));
+      findings.push_back(over(one, "temperature", 1, "temperature across the flow (k_BT)", 3));
     }
-    const auto bonds = [](double n) { return n - 1; };
-    fmt::print("nu from R {:.3f}, from R_g {:.3f} (0.588 of long chains, 0.5 of ideal ones)\n",
-               0.5 * exponent("solvent", 0, bonds), 0.5 * exponent("solvent", 1, bonds));
   }
-
-  if (wanted("pulled") > 0)
-    fmt::print(
-        "worm-like chains of ten bonds pulled at their ends: extension of the contour length, exact for "
-        "such bonds, and of one worm-like chain (Marko and Siggia)\n");
-  for (const Case& one : cases) {
-    if (one.kind != "pulled" || !is_wanted(options, one.label())) continue;
-    const engine::Spring spring = wlc_spring();
-    const double contour = 10 * spring.max_length;
-    const MeanAndSpread x = mean(one, 3);
-    fmt::print("f {:>4g}: {:.4f} +- {:.4f}, exact {:.4f}, Marko and Siggia {:.4f}\n", one.value,
-               x.mean / contour, x.deviation / contour,
-               thermal_extension(engine::SpringLaw::of(spring, 1), 1, one.value) / spring.max_length,
-               marko_siggia_extension(one.value, spring.persistence_length));
-  }
-
-  if (wanted("channel") > 0)
-    fmt::print("worm-like chains of 15 beads in a channel of height 8 under a body force:\n");
-  for (const Case& one : cases) {
-    if (one.kind != "channel" || !is_wanted(options, one.label())) continue;
-    const MeanAndSpread x2 = mean(one, 4), r2 = mean(one, 0), off = mean(one, 6), speed = mean(one, 8);
-    fmt::print(
-        "g {:>4g}: speed {:.3f}, R_x^2 {:.2f} +- {:.2f} of R^2 {:.2f}, |z| of half the height {:.3f} +- "
-        "{:.3f}, "
-        "temperature across {:.3f}\n",
-        one.value, speed.mean, x2.mean, x2.deviation, r2.mean, off.mean, off.deviation, mean(one, 7).mean);
-  }
+  // Liquid that keeps its momentum drags the beads of a chain along: Zimm's 3 nu, not Rouse's 2.
+  findings.push_back(results
+                         .derived("ideal", "relaxation_exponent", "relaxation time goes with N to the", 2,
+                                  exponent("ideal", "relaxation", 0))
+                         .against_theory({"1.5", "Zimm"}));
+  findings.push_back(results
+                         .derived("solvent", "nu", "nu of <R^2> over the number of bonds", 3,
+                                  [&] {
+                                    std::vector<double> twice = exponent("solvent", "end_to_end_square", 1);
+                                    for (double& value : twice) value /= 2;
+                                    return twice;
+                                  }())
+                         .against_theory({"0.588", "long chains"}));
+  return findings;
 }
 
 }  // namespace dmf::tools

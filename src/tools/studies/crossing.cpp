@@ -2,46 +2,56 @@
 
 #include <fmt/format.h>
 
-#include "tools/study.h"
+#include "tools/cases.h"
 
 namespace dmf::tools {
+namespace {
 
-void study_crossing(const StudyOptions& options) {
-  chip::Scene scene = chip::load_scene(options.scene);
-  scene.parameters.time_step = options.time_step;
-  scene.parameters.integrator = options.integrator;
-  if (options.list_skin > 0) scene.parameters.list_skin = options.list_skin;
-  if (options.lambda > 0) scene.parameters.integrator_lambda = options.lambda;
-  ResultTable table(options.output + "/crossing_runs.csv",
-                    {"to_-30", "to_-20", "to_0", "to_30", "to_40", "ns_per_bead_step"});
-  const auto key = [&](int seed) {
-    return fmt::format("{} dt={}{} seed={}", scene.name, options.time_step,
-                       integrator_key(options.integrator), seed);
-  };
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed)
-    jobs.push_back({key(seed), [=, &options, &scene] {
-                      const Crossing crossing = run_crossing(scene, static_cast<std::uint64_t>(seed),
-                                                             options.quick ? 100 : scene.default_duration);
-                      std::vector<double> row;
-                      for (const auto& entry : crossing.passed) row.push_back(entry.second);
-                      row.push_back(crossing.ns_per_bead_step);
-                      return row;
-                    }});
-  run_jobs("crossing " + scene.name, jobs, options, table);
-  const char* const names[] = {"x = -30", "x = -20", "x = 0", "x = 30", "x = 40", "ns per bead-step"};
-  fmt::print("{}: tau from the gradient on until the droplet passes\n", scene.name);
-  std::vector<double> middle;
-  for (std::size_t column = 0; column < 6; ++column) {
-    std::vector<double> values;
-    for (const Job& job : jobs) values.push_back(table.row(job.key)[column]);
-    const MeanAndSpread result = mean_and_spread(values);
-    fmt::print("{:<20} {:10.1f} +- {:.1f}\n", names[column], result.mean, result.deviation);
+/// A scene in which a droplet crosses a gradient from x = -40 to 40, and the time that Lan's takes.
+struct Gradient {
+  const char* scene;
+  Reference lan;
+};
+
+const std::vector<Gradient> gradients{{"gradient_R5", {"2973", "Lan, one run"}},
+                                      {"droplet_gradient", {"about 1800", "Lan, one run, R = 10"}}};
+
+const std::vector<std::string> columns{"to_-30", "to_-20", "to_0", "to_30", "to_40", "ns_per_bead_step"};
+
+}  // namespace
+
+std::vector<double> recorded_crossings(StudyOptions options) {
+  options.recorded = true;
+  return run_cases("crossing", columns, {{"gradient_R5", nullptr}}, without_only(options))
+      .of("gradient_R5", "to_40");
+}
+
+Findings study_crossing(const StudyOptions& options) {
+  std::vector<Case> cases;
+  for (const Gradient& gradient : gradients)
+    cases.push_back({gradient.scene, [=](std::uint64_t seed) {
+                       const chip::Scene scene = scene_for(options, gradient.scene);
+                       const Crossing crossing =
+                           run_crossing(scene, seed, options.quick ? 100 : scene.default_duration);
+                       std::vector<double> row;
+                       for (const auto& entry : crossing.passed) row.push_back(entry.second);
+                       row.push_back(crossing.ns_per_bead_step);
+                       return row;
+                     }});
+  const Results results = run_cases(
+      "crossing", {"to_-30", "to_-20", "to_0", "to_30", "to_40", "ns_per_bead_step"}, cases, options);
+  Findings findings;
+  for (const Gradient& gradient : gradients) {
+    const auto passes = [&](const char* column) { return results.of(gradient.scene, column); };
+    findings.push_back(
+        results.finding(gradient.scene, "to_40", "from x = -40 to 40 (tau)", 0).against_paper(gradient.lan));
+    std::vector<double> middle = passes("to_30");
+    const std::vector<double> start = passes("to_-20");
+    for (std::size_t k = 0; k < middle.size(); ++k) middle[k] -= start[k];
+    findings.push_back(
+        results.derived(gradient.scene, "from_-20_to_30", "from x = -20 to 30 (tau)", 0, middle));
   }
-  for (const Job& job : jobs) middle.push_back(table.row(job.key)[3] - table.row(job.key)[1]);
-  const MeanAndSpread result = mean_and_spread(middle);
-  fmt::print("{:<20} {:10.1f} +- {:.1f}\n", "from -20 to 30", result.mean, result.deviation);
-  fmt::print("Lan: gradient_R5 reaches x = 40 after 2,973, droplet_gradient (R = 10) in about 1,800\n");
+  return findings;
 }
 
 }  // namespace dmf::tools

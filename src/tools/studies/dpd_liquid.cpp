@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "tools/cases.h"
 #include "tools/liquid.h"
-#include "tools/study.h"
 
 namespace dmf::tools {
 
@@ -12,7 +12,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 /// Friction that fades with the exponent s and ends at r_D, under plain DPD with the repulsion a.
-struct Case {
+struct Friction {
   double exponent, radius, repulsion;
 
   std::string label() const { return fmt::format("s={} r_D={} a={}", exponent, radius, repulsion); }
@@ -50,58 +50,49 @@ struct Theory {
 
 }  // namespace
 
-void study_dpd_liquid(const StudyOptions& options) {
-  std::vector<Case> cases;
-  std::vector<std::string> labels;
+Findings study_dpd_liquid(const StudyOptions& options) {
+  std::vector<Friction> all;
   for (const double repulsion : {0.0, 18.75})
-    for (const auto& [exponent, radius] : {std::pair{2.0, 1.0}, {1.0, 1.0}, {0.5, 1.0}, {0.5, 1.88}}) {
-      cases.push_back({exponent, radius, repulsion});
-      labels.push_back(cases.back().label());
-    }
-  require_known(options, labels);
-  ResultTable table(options.output + "/dpd_liquid_runs.csv", {"temperature", "viscosity", "diffusivity"});
-  const auto key = [&](const Case& one, int seed) {
-    return fmt::format("{}{} seed={}", one.label(), options_key(options), seed);
-  };
-  std::vector<Job> jobs;
-  for (const Case& one : cases) {
-    if (!is_wanted(options, one.label())) continue;
-    for (int seed = 1; seed <= options.seeds; ++seed)
-      jobs.push_back({key(one, seed), [=] {
-                        LiquidRun how;
-                        how.seed = static_cast<std::uint64_t>(seed);
-                        how.time_step = options.time_step;
-                        how.quick = options.quick;
-                        how.measure = options.quick ? 0 : 150;
-                        how.liquid = one.liquid();
-                        const BulkResult bulk = run_bulk(how);
-                        return std::vector<double>{bulk.temperature, bulk.viscosity, bulk.diffusivity};
-                      }});
-  }
-  run_jobs("dpd_liquid", jobs, options, table);
-
-  fmt::print("gamma 4.5, 4 beads per r_c^3, {} seeds; theory knows no repulsion\n", options.seeds);
-  fmt::print("{:<24} {:>16} {:>8} {:>18} {:>8} {:>8} {:>8} {:>12}\n", "", "viscosity", "theory",
-             "diffusivity", "theory", "Schmidt", "theory", "temperature");
-  for (const Case& one : cases) {
-    if (!is_wanted(options, one.label())) continue;
-    std::vector<double> temperatures, viscosities, diffusivities;
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      const std::vector<double>& row = table.row(key(one, seed));
-      temperatures.push_back(row[0]);
-      viscosities.push_back(row[1]);
-      diffusivities.push_back(row[2]);
-    }
+    for (const auto& [exponent, radius] : {std::pair{2.0, 1.0}, {1.0, 1.0}, {0.5, 1.0}, {0.5, 1.88}})
+      all.push_back({exponent, radius, repulsion});
+  std::vector<Case> cases;
+  for (const Friction& one : all)
+    cases.push_back({one.label(), [=](std::uint64_t seed) {
+                       LiquidRun how;
+                       how.seed = seed;
+                       how.time_step = options.time_step_or(how.time_step);
+                       how.quick = options.quick;
+                       how.measure = options.quick ? 0 : 150;
+                       how.liquid = one.liquid();
+                       const BulkResult bulk = run_bulk(how);
+                       return std::vector<double>{bulk.temperature, bulk.viscosity, bulk.diffusivity};
+                     }});
+  const Results results =
+      run_cases("dpd_liquid", {"temperature", "viscosity", "diffusivity"}, cases, options);
+  Findings findings;
+  for (const Friction& one : all) {
+    const std::string label = one.label();
     const Theory theory(one.liquid());
     const double density = one.liquid().bulk_density;
-    const MeanAndSpread viscosity = mean_and_spread(viscosities),
-                        diffusivity = mean_and_spread(diffusivities);
-    fmt::print(
-        "{:<24} {:>8.3f} +- {:<4.2g} {:>8.3f} {:>9.4f} +- {:<6.1g} {:>7.4f} {:>8.2f} {:>8.2f} {:>12.4f}\n",
-        one.label(), viscosity.mean, viscosity.deviation, theory.viscosity, diffusivity.mean,
-        diffusivity.deviation, theory.diffusivity, viscosity.mean / density / diffusivity.mean,
-        theory.viscosity / density / theory.diffusivity, mean_and_spread(temperatures).mean);
+    const char* const source = "kinetic theory without repulsion";
+    findings.push_back(results.finding(label, "viscosity", "viscosity (m/(r_c tau))", 2)
+                           .against_theory(reference(theory.viscosity, 2, source))
+                           .within(0.1));
+    findings.push_back(results.finding(label, "diffusivity", "diffusivity (r_c^2/tau)", 3)
+                           .against_theory(reference(theory.diffusivity, 3, source))
+                           .within(0.1));
+    const std::vector<double> viscosity = results.of(label, "viscosity"),
+                              diffusivity = results.of(label, "diffusivity");
+    std::vector<double> schmidt;
+    for (std::size_t k = 0; k < viscosity.size(); ++k)
+      schmidt.push_back(viscosity[k] / (density * diffusivity[k]));
+    findings.push_back(
+        results.derived(label, "schmidt", "Schmidt number", 2, schmidt)
+            .against_theory(reference(theory.viscosity / (density * theory.diffusivity), 2, source))
+            .within(0.1));
+    findings.push_back(results.finding(label, "temperature", "temperature (k_BT)", 4));
   }
+  return findings;
 }
 
 }  // namespace dmf::tools

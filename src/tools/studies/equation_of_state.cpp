@@ -2,15 +2,15 @@
 
 #include <functional>
 
+#include "tools/cases.h"
 #include "tools/liquid.h"
-#include "tools/study.h"
 #include "tools/van_der_waals.h"
 
 namespace dmf::tools {
 namespace {
 
 /// A liquid, the densities that it is compressed to, and what others have found.
-struct Case {
+struct Material {
   const char* name;
   engine::LiquidParameters liquid;
   std::vector<double> densities;
@@ -40,7 +40,7 @@ double warren(double density) {
              (cubed - 4.16 * density * density + 18);
 }
 
-std::vector<Case> cases() {
+std::vector<Material> materials() {
   return {{"dpd a=18.75",
            plain_dpd(18.75),
            {1, 2, 3, 4, 5, 6, 8},
@@ -56,57 +56,51 @@ std::vector<Case> cases() {
 
 }  // namespace
 
-void study_equation_of_state(const StudyOptions& options) {
-  std::vector<std::string> labels;
-  for (const Case& one : cases()) labels.push_back(one.name);
-  require_known(options, labels);
-  ResultTable table(options.output + "/equation_of_state_runs.csv", {"density", "temperature", "pressure"});
-  const auto key = [&](const Case& one, double density, int seed) {
-    return fmt::format("{} rho={}{} seed={}", one.name, density, options_key(options), seed);
+Findings study_equation_of_state(const StudyOptions& options) {
+  const std::vector<Material> all = materials();
+  std::vector<Case> cases;
+  const auto label = [](const Material& one, double density) {
+    return fmt::format("{} rho={}", one.name, density);
   };
-  std::vector<Job> jobs;
-  for (const Case& one : cases()) {
-    if (!is_wanted(options, one.name)) continue;
+  for (const Material& one : all)
     for (const double density : one.densities)
-      for (int seed = 1; seed <= options.seeds; ++seed)
-        jobs.push_back({key(one, density, seed), [=] {
-                          LiquidRun how;
-                          how.seed = static_cast<std::uint64_t>(seed);
-                          how.time_step = options.time_step;
-                          how.lambda = options.lambda;
-                          how.integrator = options.integrator;
-                          how.quick = true;
-                          how.measure = options.quick ? 2 : 25;
-                          how.liquid = one.liquid;
-                          how.liquid.initial_density = how.liquid.bulk_density = density;
-                          const BulkResult bulk = run_bulk(how);
-                          return std::vector<double>{bulk.density, bulk.temperature, bulk.pressure};
-                        }});
-  }
-  run_jobs("equation_of_state", jobs, options, table);
-
-  for (const Case& one : cases()) {
-    if (!is_wanted(options, one.name)) continue;
-    fmt::print("{}, {} seeds\n{:>8} {:>20} {:>18} {:>18}\n", one.name, options.seeds, "density", "pressure",
-               one.source, "van der Waals");
+      cases.push_back({label(one, density), [=](std::uint64_t seed) {
+                         LiquidRun how;
+                         how.seed = seed;
+                         how.time_step = options.time_step_or(how.time_step);
+                         how.lambda = options.lambda;
+                         how.integrator = options.integrator.value_or(how.integrator);
+                         how.quick = true;
+                         how.measure = options.quick ? 2 : 25;
+                         how.liquid = one.liquid;
+                         how.liquid.initial_density = how.liquid.bulk_density = density;
+                         const BulkResult bulk = run_bulk(how);
+                         return std::vector<double>{bulk.density, bulk.temperature, bulk.pressure};
+                       }});
+  const Results results =
+      run_cases("equation_of_state", {"density", "temperature", "pressure"}, cases, options);
+  Findings findings;
+  for (const Material& one : all) {
     std::vector<double> densities, pressures;
-    std::vector<MeanAndSpread> results;
     for (const double density : one.densities) {
-      std::vector<double> values;
-      for (int seed = 1; seed <= options.seeds; ++seed)
-        values.push_back(table.row(key(one, density, seed))[2]);
-      results.push_back(mean_and_spread(values));
-      densities.push_back(density);
-      pressures.push_back(results.back().mean);
+      Finding pressure = results.finding(label(one, density), "pressure", "pressure (k_BT/r_c^3)", 2)
+                             .against_theory(reference(one.literature(density), 2, one.source));
+      if (pressure.happened() > 0) {
+        densities.push_back(density);
+        pressures.push_back(pressure.mean().mean);
+      }
+      findings.push_back(std::move(pressure));
     }
+    if (densities.size() < 3) continue;
     const VanDerWaals fit = fit_van_der_waals(densities, pressures, one.liquid.temperature);
-    for (std::size_t k = 0; k < densities.size(); ++k)
-      fmt::print("{:>8.2f} {:>12.3f} +- {:<5.2g} {:>17.3f} {:>18.3f}\n", densities[k], results[k].mean,
-                 results[k].deviation, one.literature(densities[k]),
-                 fit.pressure(densities[k], one.liquid.temperature));
-    fmt::print("van der Waals: a = {:.4g}, b = {:.4g}, residual {:.2g}\n", fit.attraction,
-               fit.excluded_volume, fit.residual);
+    findings.push_back(
+        results.derived(one.name, "van_der_waals_a", "van der Waals: attraction a", 2, {fit.attraction}));
+    findings.push_back(results.derived(one.name, "van_der_waals_b", "van der Waals: excluded volume b", 4,
+                                       {fit.excluded_volume}));
+    findings.push_back(results.derived(one.name, "van_der_waals_residual", "van der Waals: residual, rms", 2,
+                                       {fit.residual}));
   }
+  return findings;
 }
 
 }  // namespace dmf::tools

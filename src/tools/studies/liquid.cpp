@@ -2,80 +2,75 @@
 
 #include <fmt/format.h>
 
-#include "engine/parameters.h"
-#include "tools/study.h"
+#include "tools/cases.h"
 
 namespace dmf::tools {
 
-void study_liquid(const StudyOptions& options) {
-  const double radius = options.radius > 0 ? options.radius : 8;
-  ResultTable films(options.output + "/liquid_film_runs.csv", {"density", "tension", "normal_pressure"});
-  ResultTable droplets(options.output + "/liquid_droplet_runs.csv",
-                       {"density", "pressure", "radius", "temperature", "momentum"});
-  ResultTable bulks(options.output + "/liquid_bulk_runs.csv",
-                    {"density", "temperature", "pressure", "viscosity"});
-  const auto how = [options](int seed) {
-    return LiquidRun{static_cast<std::uint64_t>(seed),
-                     options.time_step,
-                     options.lambda,
-                     options.quick,
-                     options.integrator,
-                     options.list_skin};
+Findings study_liquid(const StudyOptions& options) {
+  const double radius = options.radius_or(8);
+  const auto how = [&options](std::uint64_t seed) {
+    LiquidRun run;
+    run.seed = seed;
+    run.time_step = options.time_step_or(run.time_step);
+    run.lambda = options.lambda;
+    run.quick = options.quick;
+    run.integrator = options.integrator.value_or(run.integrator);
+    run.list_skin = options.list_skin;
+    return run;
   };
-  const auto key = [&](const char* what, int seed) {
-    return fmt::format("{} dt={}{} lambda={} seed={}", what, options.time_step,
-                       integrator_key(options.integrator),
-                       options.lambda > 0 ? options.lambda : engine::Parameters{}.integrator_lambda, seed);
-  };
-  const std::string droplet = fmt::format("droplet R={}", radius);
-  std::vector<Job> film_jobs, droplet_jobs, bulk_jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed) {
-    film_jobs.push_back({key("film", seed), [=] {
-                           const FilmResult r = run_film(how(seed));
-                           return std::vector<double>{r.density, r.tension, r.normal_pressure};
-                         }});
-    droplet_jobs.push_back(
-        {key(droplet.c_str(), seed), [=] {
-           const FreeDropletResult r = run_free_droplet(how(seed), radius);
-           return std::vector<double>{r.density, r.pressure, r.radius, r.temperature, r.momentum};
-         }});
-    bulk_jobs.push_back({key("bulk", seed), [=] {
-                           const BulkResult r = run_bulk(how(seed));
-                           return std::vector<double>{r.density, r.temperature, r.pressure, r.viscosity};
-                         }});
-  }
-  run_jobs("film", film_jobs, options, films);
-  run_jobs("free droplet", droplet_jobs, options, droplets);
-  run_jobs("bulk", bulk_jobs, options, bulks);
+  const StudyOptions all = without_only(options);
+  const Results films = run_cases("liquid_film", {"density", "tension", "normal_pressure"},
+                                  {{"film",
+                                    [&](std::uint64_t seed) {
+                                      const FilmResult r = run_film(how(seed));
+                                      return std::vector<double>{r.density, r.tension, r.normal_pressure};
+                                    }}},
+                                  all);
+  const Results droplets =
+      run_cases("liquid_droplet", {"density", "pressure", "radius", "temperature", "momentum"},
+                {{"droplet",
+                  [&](std::uint64_t seed) {
+                    const FreeDropletResult r = run_free_droplet(how(seed), radius);
+                    return std::vector<double>{r.density, r.pressure, r.radius, r.temperature, r.momentum};
+                  }}},
+                all);
+  const Results bulks =
+      run_cases("liquid_bulk", {"density", "temperature", "pressure", "viscosity"},
+                {{"bulk",
+                  [&](std::uint64_t seed) {
+                    const BulkResult r = run_bulk(how(seed));
+                    return std::vector<double>{r.density, r.temperature, r.pressure, r.viscosity};
+                  }}},
+                all);
 
-  const auto column_of = [](const ResultTable& table, const std::vector<Job>& jobs, std::size_t column) {
-    std::vector<double> values;
-    for (const Job& job : jobs) values.push_back(table.row(job.key).at(column));
-    return values;
-  };
-  const auto print = [](const char* what, const std::vector<double>& values) {
-    const MeanAndSpread result = mean_and_spread(values);
-    fmt::print("{:<58} {:10.4g} +- {:.2g}\n", what, result.mean, result.deviation);
-  };
-  const auto pressures = column_of(droplets, droplet_jobs, 1), radii = column_of(droplets, droplet_jobs, 2),
-             normal_pressures = column_of(films, film_jobs, 2);
-  const double zero_pressure = mean_and_spread(normal_pressures).mean;
-  std::vector<double> laplace;
-  for (std::size_t k = 0; k < radii.size(); ++k)
-    laplace.push_back((pressures[k] - zero_pressure) * radii[k] / 2);
+  // Laplace's law against the film's normal pressure, which the time step shifts from zero.
+  const double zero_pressure = films.mean("film", "normal_pressure").mean;
+  std::vector<double> laplace = droplets.of("droplet", "pressure");
+  const std::vector<double> radii = droplets.of("droplet", "radius");
+  for (std::size_t k = 0; k < laplace.size(); ++k) laplace[k] = (laplace[k] - zero_pressure) * radii[k] / 2;
 
-  fmt::print("{} seeds, dt {}\n", options.seeds, options.time_step);
-  print("bulk temperature (k_BT)", column_of(bulks, bulk_jobs, 1));
-  print("bulk density of the box (1/r_c^3)", column_of(bulks, bulk_jobs, 0));
-  print("bulk pressure at that density (k_BT/r_c^3)", column_of(bulks, bulk_jobs, 2));
-  print("viscosity (m / (r_c tau))", column_of(bulks, bulk_jobs, 3));
-  print("density inside the film", column_of(films, film_jobs, 0));
-  print("surface tension, flat film (k_BT/r_c^2)", column_of(films, film_jobs, 1));
-  print("density inside the free droplet", column_of(droplets, droplet_jobs, 0));
-  print("surface tension, Laplace (k_BT/r_c^2)", laplace);
-  print("normal pressure of the film: error of the time step", normal_pressures);
-  print("temperature of the free droplet", column_of(droplets, droplet_jobs, 3));
-  print("momentum of the free droplet at the end (m r_c/tau)", column_of(droplets, droplet_jobs, 4));
+  const double tension = films.mean("film", "tension").mean;
+  return {
+      bulks.finding("bulk", "temperature", "temperature (k_BT)", 4).against_theory({"1", "set"}).within(0.01),
+      bulks.finding("bulk", "density", "density of the box (1/r_c^3)", 3),
+      bulks.finding("bulk", "pressure", "pressure at that density (k_BT/r_c^3)", 2),
+      bulks.finding("bulk", "viscosity", "viscosity (m/(r_c tau))", 1),
+      films.finding("film", "density", "density inside (1/r_c^3)", 3)
+          .against_theory({"6.0 to 6.1", "known of this liquid"})
+          .within(0.01),
+      films.finding("film", "tension", "surface tension (k_BT/r_c^2)", 2)
+          .against_theory({"about 7.5", "known of this liquid"})
+          .within(0.02),
+      films.finding("film", "normal_pressure", "normal pressure: error of the time step (k_BT/r_c^3)", 2),
+      droplets.finding("droplet", "density", "density inside (1/r_c^3)", 3),
+      droplets.derived("droplet", "tension", "surface tension by Laplace's law (k_BT/r_c^2)", 2, laplace)
+          .against_theory(reference(tension, 2, "the film's")),
+      droplets.finding("droplet", "temperature", "temperature (k_BT)", 4)
+          .against_theory({"1", "set"})
+          .within(0.01),
+      droplets.finding("droplet", "momentum", "momentum at the end, of all beads (m r_c/tau)", 4)
+          .against_theory({"0", "kept"})
+          .within_margin(0.02)};
 }
 
 }  // namespace dmf::tools

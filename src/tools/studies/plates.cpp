@@ -1,85 +1,73 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "chip/configuration.h"
+#include "tools/cases.h"
 #include "tools/liquid.h"
 #include "tools/pancake.h"
-#include "tools/study.h"
 
 namespace dmf::tools {
 namespace {
 
-struct Case {
+struct Pancake {
   double gap, angle;
+
+  std::string label() const { return fmt::format("gap={} angle={}", gap, angle); }
 };
 
 }  // namespace
 
-void study_plates(const StudyOptions& options) {
-  const engine::ContactAngleCurve curve =
-      options.calibration == "lan2016"
-          ? engine::ContactAngleCurve::lan2016()
-          : engine::ContactAngleCurve::load(chip::find_config("calibration", options.calibration));
-  const std::vector<Case> cases = options.quick
-                                      ? std::vector<Case>{{6, 120}}
-                                      : std::vector<Case>{{4, 70}, {4, 90},  {4, 110}, {4, 130}, {6, 70},
-                                                          {6, 90}, {6, 110}, {6, 130}, {8, 110}, {8, 130}};
-  PancakeRun usual;
-  if (options.radius > 0) usual.radius = options.radius;
-  usual.time_step = options.time_step;
-  if (options.quick) usual.radius = 8, usual.settle = 10, usual.measure = 10;
-  ResultTable table(options.output + "/plates_runs.csv", {"density", "pressure", "wall_distance", "equator"});
-  ResultTable films(options.output + "/plates_film.csv", {"tension", "normal_pressure"});
-  const auto key = [&](const Case& one, int seed) {
-    return fmt::format("gap={} angle={} R={} dt={} seed={}", one.gap, one.angle, usual.radius,
-                       options.time_step, seed);
-  };
-  const std::string film_key = fmt::format("film dt={} quick={}", options.time_step, options.quick);
-  LiquidRun film;
-  film.time_step = options.time_step;
-  film.quick = options.quick;
-  run_jobs("plates: film",
-           {{film_key,
-             [&] {
-               const FilmResult result = run_film(film);
-               return std::vector<double>{result.tension, result.normal_pressure};
-             }}},
-           options, films);
-  const double tension = films.row(film_key)[0], at_rest = films.row(film_key)[1];
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed)
-    for (const Case& one : cases)
-      jobs.push_back({key(one, seed), [&, one, seed] {
-                        PancakeRun run = usual;
-                        run.gap = one.gap;
-                        run.contact_angle = one.angle;
-                        run.seed = static_cast<std::uint64_t>(seed);
-                        const PancakeResult result = run_pancake(run, curve);
-                        return std::vector<double>{result.density, result.pressure, result.wall_distance,
-                                                   result.equator};
-                      }});
-  run_jobs("plates", jobs, options, table);
+Findings study_plates(const StudyOptions& options) {
+  const engine::ContactAngleCurve curve = curve_for(options);
+  const std::vector<Pancake> all =
+      options.quick ? std::vector<Pancake>{{6, 120}}
+                    : std::vector<Pancake>{{4, 70}, {4, 90},  {4, 110}, {4, 130}, {6, 70},
+                                           {6, 90}, {6, 110}, {6, 130}, {8, 110}, {8, 130}};
+  const Results films = run_cases("plates_film", {"tension", "normal_pressure"},
+                                  {{"film",
+                                    [&](std::uint64_t seed) {
+                                      LiquidRun film;
+                                      film.seed = seed;
+                                      film.time_step = options.time_step_or(film.time_step);
+                                      film.quick = options.quick;
+                                      const FilmResult result = run_film(film);
+                                      return std::vector<double>{result.tension, result.normal_pressure};
+                                    }}},
+                                  without_only(options));
+  std::vector<Case> cases;
+  for (const Pancake& one : all)
+    cases.push_back({one.label(), [=, &options, &curve](std::uint64_t seed) {
+                       PancakeRun run;
+                       run.radius = options.radius_or(run.radius);
+                       run.time_step = options.time_step_or(run.time_step);
+                       if (options.quick) run.radius = 8, run.settle = 10, run.measure = 10;
+                       run.gap = one.gap;
+                       run.contact_angle = one.angle;
+                       run.seed = seed;
+                       const PancakeResult r = run_pancake(run, curve);
+                       return std::vector<double>{r.density, r.pressure, r.wall_distance, r.equator};
+                     }});
+  const Results results =
+      run_cases("plates", {"density", "pressure", "wall_distance", "equator"}, cases, options);
 
-  fmt::print("tension {:.3f}, stress of a film at rest {:.3f}\n", tension, at_rest);
-  fmt::print("{:>5} {:>6} {:>10} {:>10} {:>8} {:>10} {:>8} {:>8} {:>8}\n", "gap", "angle", "pressure",
-             "Laplace's", "off by", "keeps off", "+-", "equator", "density");
-  for (const Case& one : cases) {
-    std::vector<double> pressures, expected, distances, equators, densities;
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      const std::vector<double>& row = table.row(key(one, seed));
-      pressures.push_back(row[1] - at_rest);
-      expected.push_back(tension * bridge_pressure(one.gap - 2 * row[2], one.angle, row[3]));
-      distances.push_back(row[2]);
-      equators.push_back(row[3]);
-      densities.push_back(row[0]);
+  const double tension = films.mean("film", "tension").mean,
+               at_rest = films.mean("film", "normal_pressure").mean;
+  Findings findings;
+  for (const Pancake& one : all) {
+    std::vector<double> pressures = results.of(one.label(), "pressure"), laplace;
+    const std::vector<double> distances = results.of(one.label(), "wall_distance"),
+                              equators = results.of(one.label(), "equator");
+    for (std::size_t k = 0; k < pressures.size(); ++k) {
+      pressures[k] -= at_rest;
+      laplace.push_back(tension * bridge_pressure(one.gap - 2 * distances[k], one.angle, equators[k]));
     }
-    const double pressure = mean_and_spread(pressures).mean, laplace = mean_and_spread(expected).mean;
-    fmt::print("{:5} {:6} {:10.3f} {:10.3f} {:+8.3f} {:10.3f} {:8.3f} {:8.2f} {:8.3f}\n", one.gap, one.angle,
-               pressure, laplace, pressure - laplace, mean_and_spread(distances).mean,
-               mean_and_spread(distances).deviation, mean_and_spread(equators).mean,
-               mean_and_spread(densities).mean);
+    findings.push_back(
+        results.derived(one.label(), "pressure", "pressure, over a film's (k_BT/r_c^3)", 2, pressures)
+            .against_theory(reference(mean_and_spread(laplace).mean, 2, "Young and Laplace"))
+            .within_margin(0.15));
+    findings.push_back(results.finding(one.label(), "wall_distance", "keeps off the plates (r_c)", 2));
+    findings.push_back(results.finding(one.label(), "equator", "radius half-way (r_c)", 2));
+    findings.push_back(results.finding(one.label(), "density", "density (1/r_c^3)", 3));
   }
+  return findings;
 }
 
 }  // namespace dmf::tools

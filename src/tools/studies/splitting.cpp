@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tools/study.h"
+#include "tools/cases.h"
 
 namespace dmf::tools {
 namespace {
@@ -15,55 +15,52 @@ struct Contrast {
 
 }  // namespace
 
-void study_splitting(const StudyOptions& options) {
+Findings study_splitting(const StudyOptions& options) {
   const std::vector<Contrast> contrasts = options.quick
                                               ? std::vector<Contrast>{{120, 50}}
                                               : std::vector<Contrast>{{120, 50}, {120, 70}, {120, 85}};
   const std::vector<double> pitches =
       options.quick ? std::vector<double>{10} : std::vector<double>{6, 7, 8, 9, 10, 12, 14};
-  ResultTable table(options.output + "/splitting_runs.csv", {"time", "smaller_share", "liquid_height"});
-  const auto key = [&](const Contrast& contrast, double pitch, int seed) {
-    return fmt::format("rest={} on={} gap=3 pitch={} dt={} seed={}", contrast.rest, contrast.on, pitch,
-                       options.time_step, seed);
+  const auto label = [](const Contrast& contrast, double pitch) {
+    return fmt::format("rest={} on={} gap=3 pitch={}", contrast.rest, contrast.on, pitch);
   };
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed)
-    for (const Contrast& contrast : contrasts)
-      for (const double pitch : pitches)
-        jobs.push_back({key(contrast, pitch, seed), [=, &options] {
-                          SplittingRun run;
-                          run.rest_angle = contrast.rest;
-                          run.on_angle = contrast.on;
-                          run.pitch = pitch;
-                          run.seed = static_cast<std::uint64_t>(seed);
-                          run.time_step = options.time_step;
-                          const SplittingResult result = run_splitting(run);
-                          return std::vector<double>{result.time.value_or(NAN), result.smaller_share,
-                                                     result.liquid_height};
-                        }});
-  run_jobs("splitting", jobs, options, table);
-
+  std::vector<Case> cases;
+  for (const Contrast& contrast : contrasts)
+    for (const double pitch : pitches)
+      cases.push_back({label(contrast, pitch), [=, &options](std::uint64_t seed) {
+                         SplittingRun run;
+                         run.rest_angle = contrast.rest;
+                         run.on_angle = contrast.on;
+                         run.pitch = pitch;
+                         run.seed = seed;
+                         run.time_step = options.time_step_or(run.time_step);
+                         const SplittingResult r = run_splitting(run);
+                         return std::vector<double>{r.time.value_or(NAN), r.smaller_share, r.liquid_height};
+                       }});
+  const Results results = run_cases("splitting", {"time", "smaller_share", "liquid_height"}, cases, options);
+  Findings findings;
   for (const Contrast& contrast : contrasts) {
-    const double threshold = largest_splitting_height(contrast.rest, contrast.on);
-    fmt::print("{} -> {} degrees: Cho, Moon and Kim's necking splits up to height / pitch = {:.3f}\n",
-               contrast.rest, contrast.on, threshold);
+    const double necking = largest_splitting_height(contrast.rest, contrast.on);
+    double splits_up_to = NAN;  // every run
     for (const double pitch : pitches) {
-      std::vector<double> times, shares;
-      double height = 0;
-      for (int seed = 1; seed <= options.seeds; ++seed) {
-        const std::vector<double>& row = table.row(key(contrast, pitch, seed));
-        height = row[2];
-        if (std::isfinite(row[0])) times.push_back(row[0]), shares.push_back(row[1]);
-      }
-      const std::string split =
-          times.empty() ? ""
-                        : fmt::format(", after {:.0f} +- {:.0f} tau, the smaller one has {:.2f} +- {:.2f}",
-                                      mean_and_spread(times).mean, mean_and_spread(times).deviation,
-                                      mean_and_spread(shares).mean, mean_and_spread(shares).deviation);
-      fmt::print("  pitch {:4}  height / pitch {:.3f}  gap / pitch {:.3f}  split {} of {}{}\n", pitch,
-                 height / pitch, 3 / pitch, times.size(), options.seeds, split);
+      Finding time = results.finding(label(contrast, pitch), "time", "split after (tau)", 0);
+      if (time.values.empty()) continue;
+      const double height = results.mean(label(contrast, pitch), "liquid_height").mean / pitch;
+      if (time.happened() == static_cast<int>(time.values.size()))
+        splits_up_to = std::fmax(splits_up_to, height);
+      findings.push_back(results.derived(label(contrast, pitch), "height_over_pitch",
+                                         "height of the liquid over the pitch", 3, {height}));
+      findings.push_back(std::move(time));
+      findings.push_back(
+          results.finding(label(contrast, pitch), "smaller_share", "share of the smaller one", 2));
     }
+    findings.push_back(results
+                           .derived(fmt::format("rest={} on={}", contrast.rest, contrast.on), "splits_up_to",
+                                    "always splits up to a height over pitch of", 3, {splits_up_to})
+                           .against_theory(reference(necking, 3, "necking, Cho, Moon and Kim"))
+                           .within(0.15));
   }
+  return findings;
 }
 
 }  // namespace dmf::tools

@@ -2,18 +2,20 @@
 
 #include <fstream>
 
+#include "tools/cases.h"
 #include "tools/duct.h"
-#include "tools/study.h"
 
 namespace dmf::tools {
 namespace {
 
 const std::vector<double> repulsions{9.68, 18};  // of fluid and wall: the ends of Chen's range
 
-DuctRun duct_run(const StudyOptions& options, double repulsion, int seed) {
+std::string label_of(double repulsion) { return fmt::format("a_AW={:g}", repulsion); }
+
+DuctRun duct_run(const StudyOptions& options, double repulsion, std::uint64_t seed) {
   DuctRun run;
-  run.seed = static_cast<std::uint64_t>(seed);
-  run.time_step = options.time_step;
+  run.seed = seed;
+  run.time_step = options.time_step_or(run.time_step);
   run.wall_repulsion = repulsion;
   if (options.quick) {
     run.length = 6;
@@ -40,49 +42,40 @@ void write_profile(const StudyOptions& options, const DuctRun& run, const DuctRe
 
 }  // namespace
 
-void study_square_channel(const StudyOptions& options) {
-  std::vector<std::string> labels;
-  for (const double repulsion : repulsions) labels.push_back(fmt::format("{:g}", repulsion));
-  require_known(options, labels);
-  ResultTable table(
-      options.output + "/square_channel_runs.csv",
-      {"mass_flow", "viscosity", "fitted_half_width", "deviation", "temperature", "wall_density"});
-  const auto key = [&](double repulsion, int seed) {
-    return fmt::format("a_AW={:g}{} seed={}", repulsion, options_key(options), seed);
-  };
-  std::vector<Job> jobs;
+Findings study_square_channel(const StudyOptions& options) {
+  std::vector<Case> cases;
+  for (const double repulsion : repulsions)
+    cases.push_back({label_of(repulsion), [=, &options](std::uint64_t seed) {
+                       const DuctRun run = duct_run(options, repulsion, seed);
+                       const DuctResult result = run_duct(run);
+                       write_profile(options, run, result);
+                       return std::vector<double>{result.mass_flow, result.viscosity,   result.fitted_width,
+                                                  result.deviation, result.temperature, result.densest};
+                     }});
+  const Results results =
+      run_cases("square_channel",
+                {"mass_flow", "viscosity", "fitted_half_width", "deviation", "temperature", "wall_density"},
+                cases, options);
+  Findings findings;
   for (const double repulsion : repulsions) {
-    if (!is_wanted(options, fmt::format("{:g}", repulsion))) continue;
-    for (int seed = 1; seed <= options.seeds; ++seed)
-      jobs.push_back({key(repulsion, seed), [=, &options] {
-                        const DuctRun run = duct_run(options, repulsion, seed);
-                        const DuctResult result = run_duct(run);
-                        write_profile(options, run, result);
-                        return std::vector<double>{result.mass_flow, result.viscosity,   result.fitted_width,
-                                                   result.deviation, result.temperature, result.densest};
-                      }});
+    const std::string label = label_of(repulsion);
+    findings.push_back(results.finding(label, "mass_flow", "mass flow (m/tau)", 0)
+                           .against_paper({"3416", "Chen"})
+                           .within(0.02));
+    findings.push_back(
+        results
+            .finding(label, "deviation", "profile off the series of a duct, rms of the largest velocity", 4)
+            .against_theory({"0 to 0.025", "Chen: within 2.5 % of a finite-volume solver"}));
+    findings.push_back(
+        results.finding(label, "fitted_half_width", "half width at which the profile vanishes (r_c)", 2)
+            .against_theory({"10", "no slip"})
+            .within(0.02));
+    findings.push_back(results.finding(label, "viscosity", "viscosity of the fit (m/(r_c tau))", 2));
+    findings.push_back(results.finding(label, "temperature", "temperature across the flow (k_BT)", 4));
+    findings.push_back(
+        results.finding(label, "wall_density", "density of the cells at the walls, of the mean", 3));
   }
-  run_jobs("square_channel", jobs, options, table);
-
-  fmt::print("channel 20 x 20 r_c, rho 4, a 18.75, s 1/2, gamma 4.5, g 0.1; Chen: mass flow 3416, no slip\n");
-  fmt::print("{:>6} {:>18} {:>18} {:>18} {:>12} {:>12} {:>12}\n", "a_AW", "mass flow", "viscosity",
-             "half width", "off fit", "temperature", "wall density");
-  for (const double repulsion : repulsions) {
-    if (!is_wanted(options, fmt::format("{:g}", repulsion))) continue;
-    std::vector<std::vector<double>> columns(6);
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      const std::vector<double>& row = table.row(key(repulsion, seed));
-      for (std::size_t k = 0; k < row.size(); ++k) columns[k].push_back(row[k]);
-    }
-    const MeanAndSpread flow = mean_and_spread(columns[0]), viscosity = mean_and_spread(columns[1]),
-                        width = mean_and_spread(columns[2]);
-    fmt::print(
-        "{:>6.2f} {:>9.1f} +- {:<5.1f} {:>9.3f} +- {:<5.3f} {:>9.3f} +- {:<5.3f} {:>11.2f}% {:>12.4f} "
-        "{:>12.3f}\n",
-        repulsion, flow.mean, flow.deviation, viscosity.mean, viscosity.deviation, width.mean,
-        width.deviation, 100 * mean_and_spread(columns[3]).mean, mean_and_spread(columns[4]).mean,
-        mean_and_spread(columns[5]).mean);
-  }
+  return findings;
 }
 
 }  // namespace dmf::tools

@@ -1,26 +1,25 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
 
-#include "chip/configuration.h"
 #include "engine/wettability.h"
+#include "tools/cases.h"
+#include "tools/saved_run.h"
 #include "tools/structured_wall.h"
-#include "tools/study.h"
 
 namespace dmf::tools {
 namespace {
 
 /// One row of the study: what is varied, and what Yao found.
-struct Case {
+struct Droplet {
   std::string label;
   double attraction, spacing, force, drive;  ///< spacing 0: smooth
 };
 
 /// Yao's f_s are those of ridges 4 wide, whole numbers apart: 3, 5, 9, 11 are 0.571, 0.444, 0.308, 0.267.
-std::vector<Case> cases(bool quick, const engine::ContactAngleCurve& curve) {
+std::vector<Droplet> droplets(bool quick, const engine::ContactAngleCurve& curve) {
   const double drive = quick ? 20 : 2000;
-  std::vector<Case> all;
+  std::vector<Droplet> all;
   // Figure 4: static angles at f_s 0.444, beside those of the smooth wall in the same slab.
   for (const double attraction : {-11.0, -13.0, -15.0, -17.0})
     for (const double s : {0.0, 5.0})
@@ -38,7 +37,7 @@ std::vector<Case> cases(bool quick, const engine::ContactAngleCurve& curve) {
   return all;
 }
 
-StructuredWallRun run_of(const StudyOptions& options, const Case& one, int seed) {
+StructuredWallRun run_of(const StudyOptions& options, const Droplet& one, std::uint64_t seed) {
   StructuredWallRun run;
   run.attraction = one.attraction;
   run.spacing = one.spacing;
@@ -47,77 +46,54 @@ StructuredWallRun run_of(const StudyOptions& options, const Case& one, int seed)
   run.length = one.drive > 0 ? 200 : 100;
   run.settle = options.quick ? 40 : 150;
   run.rest = options.quick ? 10 : 150;
-  run.seed = static_cast<std::uint64_t>(seed);
-  run.parameters.time_step = options.time_step;
-  run.parameters.integrator = options.integrator;
-  if (options.lambda > 0) run.parameters.integrator_lambda = options.lambda;
+  run.seed = seed;
+  apply(options, run.parameters);
   return run;
-}
-
-std::string file_name(std::string key) {
-  for (char& c : key)
-    if (c == ' ' || c == '/') c = '_';
-  return key;
 }
 
 }  // namespace
 
-void study_structured_wall(const StudyOptions& options) {
-  const engine::ContactAngleCurve curve =
-      options.calibration == "lan2016"
-          ? engine::ContactAngleCurve::lan2016()
-          : engine::ContactAngleCurve::load(chip::find_config("calibration", options.calibration));
-  const std::vector<Case> all = cases(options.quick, curve);
-  std::vector<std::string> labels;
-  for (const Case& one : all) labels.push_back(one.label);
-  require_known(options, labels);
-  ResultTable table(options.output + "/structured_wall_runs.csv",
-                    {"angle", "difference", "sunk", "velocity"});
-  const auto key = [&](const Case& one, int seed) {
-    return fmt::format("{}{} seed={}", one.label, options_key(options), seed);
-  };
-  std::vector<Job> jobs;
-  for (const Case& one : all) {
-    if (!is_wanted(options, one.label)) continue;
-    for (int seed = 1; seed <= options.seeds; ++seed)
-      jobs.push_back(
-          {key(one, seed), [=, &options] {
-             std::ofstream csv;
-             const auto sample = [&](const FrontSample& seen) {
-               if (!csv.is_open()) {
-                 csv.open(options.output + "/structured_wall_" + file_name(key(one, seed)) + ".csv");
-                 csv << "time,centre,front,angle\n";
-               }
-               csv << fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}\n", seen.time, seen.centre, seen.front,
-                                  seen.angle);
-             };
-             return row_or_nan(key(one, seed), 4, [&] {
-               const StructuredWallResult result = run_structured_wall(run_of(options, one, seed), sample);
-               return std::vector<double>{result.angle, result.difference, result.sunk, result.velocity};
-             });
-           }});
+Findings study_structured_wall(const StudyOptions& options) {
+  const engine::ContactAngleCurve curve = curve_for(options);
+  const std::vector<Droplet> all = droplets(options.quick, curve);
+  std::vector<Case> cases;
+  for (const Droplet& one : all)
+    cases.push_back({one.label, [=, &options](std::uint64_t seed) {
+                       std::ofstream csv;
+                       const auto sample = [&](const FrontSample& seen) {
+                         if (!csv.is_open()) {
+                           csv.open(fmt::format("{}/structured_wall_{}_seed{}.csv", options.output,
+                                                file_name(one.label + options_key(options)), seed));
+                           csv << "time,centre,front,angle\n";
+                         }
+                         csv << fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}\n", seen.time, seen.centre,
+                                            seen.front, seen.angle);
+                       };
+                       const StructuredWallResult found =
+                           run_structured_wall(run_of(options, one, seed), sample);
+                       return std::vector<double>{found.angle, found.difference, found.sunk, found.velocity};
+                     }});
+  const Results results =
+      run_cases("structured_wall", {"angle", "difference", "sunk", "velocity"}, cases, options);
+  Findings findings;
+  for (const Droplet& one : all) {
+    const double solid = run_of(options, one, 1).solid_fraction();
+    Finding angle = results.finding(one.label, "angle", "contact angle (degrees)", 1);
+    // Of a smooth wall the calibration tells; of ridges Cassie and Baxter, from what the smooth wall shows
+    // here.
+    const std::string smooth = fmt::format("static A={:g} S=0", one.attraction);
+    const double measured = results.mean(smooth, "angle").mean;
+    if (one.spacing == 0)
+      angle.against_theory(reference(curve.angle(one.attraction), 1, "calibration"));
+    else if (one.drive == 0 && !results.of(smooth, "angle").empty())
+      angle.against_theory(reference(cassie_baxter_angle(solid, measured), 1, "Cassie and Baxter"));
+    findings.push_back(angle.within_margin(3));
+    findings.push_back(results.finding(one.label, "sunk", "share of the grooves under it that is filled", 2));
+    if (one.drive > 0)
+      findings.push_back(
+          results.finding(one.label, "velocity", fmt::format("velocity at f_s {:.3f} (r_c/tau)", solid), 5));
   }
-  run_jobs("structured_wall", jobs, options, table);
-
-  fmt::print("ridges 4 wide, 1 high; Cassie-Baxter from the calibrated angle of the smooth wall\n");
-  fmt::print("{:<24} {:>8} {:>8} {:>10} {:>16} {:>8} {:>22}\n", "", "f_s", "smooth", "C.-Baxter", "angle",
-             "sunk", "velocity");
-  for (const Case& one : all) {
-    if (!is_wanted(options, one.label)) continue;
-    std::vector<double> angles, sunk, velocities;
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      const std::vector<double>& row = table.row(key(one, seed));
-      angles.push_back(row[0]);
-      sunk.push_back(row[2]);
-      velocities.push_back(row[3]);
-    }
-    const StructuredWallRun run = run_of(options, one, 1);
-    const double smooth = curve.angle(one.attraction);
-    const MeanAndSpread angle = mean_and_spread(angles), velocity = mean_and_spread(velocities);
-    fmt::print("{:<24} {:>8.3f} {:>8.1f} {:>10.1f} {:>9.1f} +- {:<4.1f} {:>8.2f} {:>12.5f} +- {:<8.5f}\n",
-               one.label, run.solid_fraction(), smooth, cassie_baxter_angle(run.solid_fraction(), smooth),
-               angle.mean, angle.deviation, mean_and_spread(sunk).mean, velocity.mean, velocity.deviation);
-  }
+  return findings;
 }
 
 }  // namespace dmf::tools

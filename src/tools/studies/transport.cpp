@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
-#include "tools/saved_run.h"
-#include "tools/study.h"
+#include "tools/cases.h"
 #include "tools/trajectory.h"
 
 namespace dmf::tools {
@@ -27,6 +27,8 @@ struct Quantity {
   int decimals;
   std::function<double(const Records&)> measure;  ///< NaN: has not happened
   std::vector<const char*> lan = {};              ///< what Lan found, by value; may end early
+  /// How far off Lan's single runs still counts as the same, where a tenth of them says nothing.
+  double margin = 0;
 };
 
 /// A study: the scene of config/scenes that has its name, a value in it that is varied, and when a run is
@@ -108,6 +110,14 @@ Quantity quantity(const char* name, const char* title, int decimals, double (Tra
           std::move(lan)};
 }
 
+/// On the wall it stands 1 less the indentation of some 0.0025: within a fifth of that.
+Quantity mean_height(std::vector<const char*> lan = {}) {
+  Quantity height =
+      quantity("mean_height", "mean height over the wall (r_c)", 5, &Trajectory::mean_height, std::move(lan));
+  height.margin = 0.0005;
+  return height;
+}
+
 Quantity passes(const char* name, const char* title, double x, std::vector<const char*> lan = {}) {
   return {name, title, 0, [x](const Records& records) { return Trajectory(records, 1).time_at(x); },
           std::move(lan)};
@@ -157,9 +167,8 @@ const std::vector<Description>& descriptions() {
        {picked_up(), passes("passes_0", "passes x = 0 at (tau)", 0, {"2317"}), from_29_to_0(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"4800"}),
         quantity("fastest", "fastest at (tau)", 0, &Trajectory::time_fastest, {"2000 to 4000"}),
-        quantity("mean_height", "mean height over the wall (r_c)", 5, &Trajectory::mean_height, {"0.9975"}),
-        contact_fraction(), quantity("final_x", "rests at x (r_c)", 2, &Trajectory::final_x),
-        dropped_off_at()}},
+        mean_height({"0.9975"}), contact_fraction(),
+        quantity("final_x", "rests at x (r_c)", 2, &Trajectory::final_x), dropped_off_at()}},
       {"pickup_size",
        "larger droplets: time of the microparticle from x = -30 to 0",
        "R",
@@ -168,9 +177,7 @@ const std::vector<Description>& descriptions() {
        40,
        500,
        {picked_up(), passes("passes_0", "passes x = 0 at (tau)", 0, {"2317", "1673", "1324", "1140"}),
-        from_29_to_0(), passes("passes_40", "passes x = 40 at (tau)", 40),
-        quantity("mean_height", "mean height over the wall (r_c)", 5, &Trajectory::mean_height),
-        dropped_off_at()}},
+        from_29_to_0(), passes("passes_40", "passes x = 40 at (tau)", 40), mean_height(), dropped_off_at()}},
       {"pickup_wetting",
        "attraction of the microparticle: dragged or swallowed",
        "A_ls",
@@ -179,8 +186,7 @@ const std::vector<Description>& descriptions() {
        never,
        never,
        {picked_up(),
-        quantity("mean_height", "mean height over the wall (r_c)", 5, &Trajectory::mean_height,
-                 {"0.99751", "0.99784", "0.99830"}),
+        mean_height({"0.99751", "0.99784", "0.99830"}),
         {"lifted",
          "lifted off the wall at (tau)",
          0,
@@ -273,9 +279,8 @@ const std::vector<Description>& descriptions() {
        40,
        500,
        {picked_up(), passes("passes_0", "passes x = 0 at (tau)", 0), from_29_to_0(),
-        passes("passes_40", "passes x = 40 at (tau)", 40),
-        quantity("mean_height", "mean height over the wall (r_c)", 5, &Trajectory::mean_height),
-        contact_fraction(), dropped_off_at()}},
+        passes("passes_40", "passes x = 40 at (tau)", 40), mean_height(), contact_fraction(),
+        dropped_off_at()}},
       {"multi_particle",
        "ten microparticles of two wettabilities: which are collected?",
        "",
@@ -299,87 +304,86 @@ const std::vector<Description>& descriptions() {
   return all;
 }
 
-}  // namespace
-
-std::vector<StudyTitle> transport_studies() {
-  std::vector<StudyTitle> titles;
-  for (const Description& study : descriptions()) titles.push_back({study.name, study.about});
-  return titles;
+std::string label_of(const Description& study, const Value& value) {
+  return value.label.empty() ? "" : fmt::format("{}={}", study.varied, value.label);
 }
 
-void study_transport(const std::string& name, const StudyOptions& options) {
-  const auto found = std::find_if(descriptions().begin(), descriptions().end(),
-                                  [&](const Description& candidate) { return name == candidate.name; });
-  const Description& study = *found;
-  std::vector<std::string> labels, columns;
-  for (const Value& value : study.values) labels.push_back(value.label);
+Findings run_study(const Description& study, const StudyOptions& options) {
+  std::vector<std::string> columns;
   for (const Quantity& quantity : study.quantities) columns.push_back(quantity.name);
-  require_known(options, labels);
-
-  ResultTable table(fmt::format("{}/{}_runs.csv", options.output, study.name), columns);
-  const auto name_of = [&study](const Value& value) {
-    return value.label.empty() ? "scene" : fmt::format("{}={}", study.varied, value.label);
-  };
-  const auto variant = [&](const Value& value) { return name_of(value) + options_key(options); };
-  const auto key = [&](const Value& value, int seed) {
-    return fmt::format("{} seed={}", variant(value), seed);
-  };
-  // One seed of everything first: a study that was stopped early says something of every value.
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed)
-    for (const Value& value : study.values) {
-      if (!is_wanted(options, value.label)) continue;
-      chip::Scene scene = scene_for(options, study.name);
-      value.apply(scene);
-      TransportRun run;
-      run.limit = study.limit;
-      run.goal = study.goal;
-      run.after_drop_off = study.after_drop_off;
-      run.folder = options.output + "/runs";
-      run.key = fmt::format("{} {}", study.name, key(value, seed));
-      if (options.quick) {
-        shorten_the_approach(scene);
-        run.limit = 60;
-        run.record_every = 1;
-      }
-      jobs.push_back({key(value, seed), [&study, scene, seed, run] {
-                        return row_or_nan(run.key, study.quantities.size(), [&] {
-                          const Transport transport =
-                              run_transport(scene, static_cast<std::uint64_t>(seed), run);
-                          std::vector<double> row;
-                          for (const Quantity& quantity : study.quantities)
-                            row.push_back(quantity.measure(transport.records));
-                          return row;
-                        });
-                      }});
+  std::vector<Case> cases;
+  for (const Value& value : study.values) {
+    chip::Scene scene = scene_for(options, study.name);
+    value.apply(scene);
+    TransportRun run;
+    run.limit = study.limit;
+    run.goal = study.goal;
+    run.after_drop_off = study.after_drop_off;
+    run.folder = options.output + "/runs";
+    const std::string label = label_of(study, value);
+    run.key = fmt::format("{} {}{}", study.name, label.empty() ? "scene" : label, options_key(options));
+    if (options.quick) {
+      shorten_the_approach(scene);
+      run.limit = 60;
+      run.record_every = 1;
     }
-  run_jobs(study.name, jobs, options, table);
-
-  std::string summary = "value,quantity,mean,standard_deviation,runs,lan\n";
-  fmt::print("{}: {}\n", study.name, study.about);
-  for (std::size_t k = 0; k < study.values.size(); ++k) {
-    if (!is_wanted(options, study.values[k].label)) continue;
-    for (std::size_t column = 0; column < study.quantities.size(); ++column) {
-      const Quantity& quantity = study.quantities[column];
-      std::vector<double> happened;
-      for (int seed = 1; seed <= options.seeds; ++seed)
-        if (const double value = table.row(key(study.values[k], seed))[column]; std::isfinite(value))
-          happened.push_back(value);
-      const MeanAndSpread result = mean_and_spread(happened);
-      const std::string lan = k < quantity.lan.size() ? quantity.lan[k] : "";
-      const std::string ours = happened.empty()
-                                   ? "never"
-                                   : fmt::format("{:.{}f} +- {:.{}f}", result.mean, quantity.decimals,
-                                                 result.deviation, quantity.decimals);
-      fmt::print("{:<12} {:<44} {:>20} in {} of {} runs{}\n", variant(study.values[k]), quantity.title, ours,
-                 happened.size(), options.seeds, lan.empty() ? "" : "   Lan: " + lan);
-      summary += fmt::format("{},{},{:.6g},{:.3g},{},{}\n", variant(study.values[k]), quantity.name,
-                             happened.empty() ? NAN : result.mean, result.deviation, happened.size(), lan);
-    }
+    cases.push_back({label, [&study, scene, run](std::uint64_t seed) {
+                       TransportRun seeded = run;
+                       seeded.key += fmt::format(" seed={}", seed);
+                       const Transport transport = run_transport(scene, seed, seeded);
+                       std::vector<double> row;
+                       for (const Quantity& quantity : study.quantities)
+                         row.push_back(quantity.measure(transport.records));
+                       return row;
+                     }});
   }
-  const std::string file = fmt::format("{}/{}.csv", options.output, study.name);
-  replace_file(file, summary);
-  fmt::print("written: {}\n", file);
+  const Results results = run_cases(study.name, columns, cases, options);
+  Findings findings;
+  for (std::size_t k = 0; k < study.values.size(); ++k)
+    for (const Quantity& quantity : study.quantities) {
+      Finding finding =
+          results.finding(label_of(study, study.values[k]), quantity.name, quantity.title, quantity.decimals);
+      if (k < quantity.lan.size() && *quantity.lan[k]) finding.against_paper({quantity.lan[k], "Lan"});
+      quantity.margin > 0 ? finding.within_margin(quantity.margin) : finding.within(0.1);
+      if (!finding.values.empty()) findings.push_back(std::move(finding));
+    }
+  if (study.name == std::string("pickup"))
+    if (const std::vector<double> alone = recorded_crossings(options); !alone.empty()) {
+      std::vector<double> longer = results.of("", "passes_40");
+      for (double& time : longer) time /= mean_and_spread(alone).mean;
+      findings.push_back(results.derived("", "times_alone", "to x = 40, of a droplet's time alone", 2, longer)
+                             .against_paper({"1.61", "Lan"})
+                             .within(0.1));
+    }
+  // Lan's runs are single ones: that the values stand in his order says more than each of them.
+  for (const Quantity& quantity : study.quantities) {
+    std::vector<std::pair<double, double>> pairs;
+    for (std::size_t k = 0; k < std::min(study.values.size(), quantity.lan.size()); ++k) {
+      const double mean = results.mean(label_of(study, study.values[k]), quantity.name).mean;
+      char* end = nullptr;
+      const double lan = std::strtod(quantity.lan[k], &end);
+      const bool known = end != quantity.lan[k] && *end == '\0';
+      if (known && !results.of(label_of(study, study.values[k]), quantity.name).empty())
+        pairs.emplace_back(mean, lan);
+    }
+    if (pairs.size() > 2)
+      findings.push_back(results
+                             .derived("", std::string("order_of_") + quantity.name,
+                                      fmt::format("{}: order, rank correlation", quantity.title), 2,
+                                      {rank_correlation(pairs)})
+                             .against_paper({"1", "Lan's order"}));
+  }
+  return findings;
+}
+
+}  // namespace
+
+std::vector<Study> transport_studies() {
+  std::vector<Study> studies;
+  for (const Description& study : descriptions())
+    studies.push_back({study.name, study.about,
+                       [&study](const StudyOptions& options) { return run_study(study, options); }});
+  return studies;
 }
 
 }  // namespace dmf::tools

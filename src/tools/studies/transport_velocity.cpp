@@ -4,50 +4,44 @@
 
 #include <cmath>
 
-#include "tools/saved_run.h"
-#include "tools/study.h"
+#include "tools/cases.h"
 
 namespace dmf::tools {
 
-void study_transport_velocity(const StudyOptions& options) {
+Findings study_transport_velocity(const StudyOptions& options) {
   const std::vector<double> voltages =
       options.quick ? std::vector<double>{10, 60}
                     : std::vector<double>{10, 20, 30, 35, 40, 45, 50, 60, 70, 80, 100, 120};
-  ResultTable table(options.output + "/transport_velocity_runs.csv", {"velocity", "electrodes"});
   const chip::Scene scene = scene_for(options, "transport_velocity");
-  const auto key = [&](double voltage, int seed) {
-    return fmt::format("V={} dt={} seed={}", voltage, options.time_step, seed);
-  };
-  std::vector<Job> jobs;
-  for (int seed = 1; seed <= options.seeds; ++seed)
-    for (const double voltage : voltages)
-      jobs.push_back({key(voltage, seed), [=, &scene] {
-                        VelocityRun run;
-                        run.voltage = voltage;
-                        run.seed = static_cast<std::uint64_t>(seed);
-                        const VelocityResult result = run_transport_velocity(scene, run);
-                        return std::vector<double>{result.velocity, result.electrodes};
-                      }});
-  run_jobs("transport_velocity", jobs, options, table);
+  const auto label = [](double voltage) { return fmt::format("V={}", voltage); };
+  std::vector<Case> cases;
+  for (const double voltage : voltages)
+    cases.push_back({label(voltage), [=, &scene](std::uint64_t seed) {
+                       VelocityRun run;
+                       run.voltage = voltage;
+                       run.seed = seed;
+                       const VelocityResult result = run_transport_velocity(scene, run);
+                       return std::vector<double>{result.velocity, result.electrodes};
+                     }});
+  const Results results = run_cases("transport_velocity", {"velocity", "electrodes"}, cases, options);
 
-  // What the force on the contact line would make of it: eta, which is V^2 - V_T^2 up to saturation.
-  std::string summary = "voltage,velocity,standard_deviation,electrowetting_number,contact_angle_deg\n";
-  fmt::print("{:>6} {:>8} {:>8} {:>10} {:>8} {:>12}\n", "V rms", "angle", "eta", "r_c / tau", "+-",
-             "per eta");
-  const double rest = std::cos(scene.electrowetting.rest_angle * M_PI / 180);
+  // What the force on the contact line makes of it: V^2 - V_T^2 up to saturation, as fast as here at 40 V.
+  const auto force = [&](double voltage) {
+    const auto cosine = [](double degrees) { return std::cos(degrees * M_PI / 180); };
+    return cosine(scene.electrowetting.contact_angle(voltage)) - cosine(scene.electrowetting.rest_angle);
+  };
+  const double unit = results.mean(label(40), "velocity").mean / force(40);
+  Findings findings;
   for (const double voltage : voltages) {
-    std::vector<double> velocities;
-    for (int seed = 1; seed <= options.seeds; ++seed) velocities.push_back(table.row(key(voltage, seed))[0]);
-    const MeanAndSpread velocity = mean_and_spread(velocities);
-    const double angle = scene.electrowetting.contact_angle(voltage);
-    const double eta = std::cos(angle * M_PI / 180) - rest;
-    fmt::print("{:6} {:8.1f} {:8.3f} {:10.4f} {:8.4f} {:12.4f}\n", voltage, angle, eta, velocity.mean,
-               velocity.deviation, eta > 1e-9 ? velocity.mean / eta : NAN);
-    summary += fmt::format("{},{:.6g},{:.3g},{:.6g},{:.6g}\n", voltage, velocity.mean, velocity.deviation,
-                           scene.electrowetting.number(voltage), angle);
+    Finding velocity = results.finding(label(voltage), "velocity", "velocity (r_c/tau)", 4);
+    if (velocity.happened() > 0 && unit > 0)
+      velocity.against_theory(reference(unit * force(voltage), 4, "V^2 - V_T^2, saturated")).within(0.1);
+    findings.push_back(std::move(velocity));
+    findings.push_back(results.finding(label(voltage), "electrodes", "electrodes passed", 1));
+    findings.push_back(results.derived(label(voltage), "contact_angle", "contact angle commanded (degrees)",
+                                       1, {scene.electrowetting.contact_angle(voltage)}));
   }
-  replace_file(options.output + "/transport_velocity.csv", summary);
-  fmt::print("written: {}/transport_velocity.csv\n", options.output);
+  return findings;
 }
 
 }  // namespace dmf::tools
