@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "engine/simulation.h"
+#include "tools/saved_run.h"
 
 namespace dmf::tools {
 namespace {
@@ -25,12 +26,12 @@ ResultRow do_run(const Run& run, std::size_t columns) {
   const double start = thread_seconds();
   ResultRow row;
   try {
-    row.values = run.of->run(run.seed);
+    row = run.of->run(run.seed);
   } catch (const engine::Instability& problem) {
     fmt::print(stderr, "{}: {}\n", run.key, problem.what());
-    row.values.assign(columns, NAN);
+    row = std::vector<double>(columns, NAN);
   }
-  row.computing = thread_seconds() - start;
+  row.computing += thread_seconds() - start;
   row.engine = engine_commit();
   return row;
 }

@@ -14,8 +14,10 @@ namespace dmf::tools {
 /// What a study varies has one value: how it is run.
 struct Case {
   std::string label;  ///< "R=5"; empty in a study that varies nothing
-  /// Gives the row, by column; single-threaded. What engine::Instability ends leaves a row of NaN.
-  std::function<std::vector<double>(std::uint64_t seed)> run;
+  /// Gives the row, by column; single-threaded. Its `computing` is what the run had taken before it was
+  /// stopped and taken up again: the time of this call is added. What engine::Instability ends leaves a row
+  /// of NaN.
+  std::function<ResultRow(std::uint64_t seed)> run;
 };
 
 /// What the cases of a study have given, over seeds.

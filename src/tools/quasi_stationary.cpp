@@ -270,7 +270,9 @@ QuasiStationary run_quasi_stationary(const chip::Scene& scene, std::uint64_t see
     if (saved.due() && !run.over()) saved.save(run.state(), seed, run.simulation().steps());
   }
   saved.remove();
-  return run.result();
+  QuasiStationary result = run.result();
+  result.earlier_computing = saved.earlier_computing();
+  return result;
 }
 
 }  // namespace dmf::tools

@@ -38,6 +38,7 @@ struct QuasiStationary {
   double contact_fraction = 0, height = 0;
   double droplet_ahead = 0;  ///< x of the droplet's centroid from the microparticle
   FlowField flow;
+  double earlier_computing = 0;  ///< SavedRun, s
 };
 
 /// Single-threaded. @throws engine::InvalidInput, engine::Instability; std::runtime_error when a file can't

@@ -1,7 +1,6 @@
 #include "tools/result_table.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -77,12 +76,6 @@ void ResultTable::add(const std::string& key, const ResultRow& row) {
 
 std::string ResultTable::line_of(const std::string& key, const ResultRow& row) const {
   return fmt::format("{},{:.10g},{:.4g},{}\n", key, fmt::join(row.values, ","), row.computing, row.engine);
-}
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 std::string engine_commit() { return DMF_SIM_COMMIT; }

@@ -9,9 +9,12 @@ namespace dmf::tools {
 
 /// What one run has given.
 struct ResultRow {
+  ResultRow() = default;
+  ResultRow(std::vector<double> by_column) : values(std::move(by_column)), computing(0) {}
+
   std::vector<double> values;  ///< by column
-  double computing = NAN;  ///< processor time of the run, s; of its last stretch if it was stopped in between
-  std::string engine;      ///< commit that it was made with; empty: not recorded
+  double computing = NAN;      ///< processor time of the run, s; NaN: not recorded
+  std::string engine;          ///< commit that it was made with; empty: not recorded
 };
 
 /// Results of runs, one a line in a CSV file, written as soon as they are there: a study that was killed goes
@@ -39,9 +42,6 @@ class ResultTable {
   std::map<std::string, ResultRow> rows_;
   bool begun_ = false;  ///< the file has been written with today's columns
 };
-
-/// What the calling thread has had of a processor since it began, s.
-double thread_seconds();
 
 /// The commit that this program was built from, with "-dirty" when the tree was changed; "unknown" outside
 /// git.

@@ -16,7 +16,9 @@ class SavedRun {
 
   /// What an earlier call has saved. Nothing when there is no state, or when it is damaged: that is told on
   /// standard error.
-  std::optional<std::string> load() const;
+  std::optional<std::string> load();
+  /// Processor time that this run had taken when what load() gave was saved, s.
+  double earlier_computing() const { return earlier_computing_; }
   /// Is it time for another state?
   bool due() const;
   void save(const std::string& state, std::uint64_t seed, std::uint64_t step);
@@ -26,8 +28,12 @@ class SavedRun {
  private:
   std::string folder_, name_;
   double every_;
+  double earlier_computing_ = 0, start_;
   std::chrono::steady_clock::time_point last_;
 };
+
+/// What the calling thread has had of a processor since it began, s.
+double thread_seconds();
 
 /// A run's key as a file's name: "pickup_size R=5 seed=1" is pickup_size_R5_seed1.
 std::string file_name(const std::string& key);

@@ -230,7 +230,7 @@ std::vector<TransportRecord> read_records(const std::string& file) {
 Transport run_transport(const chip::Scene& scene, std::uint64_t seed, const TransportRun& run) {
   const std::string base = run.folder + "/" + file_name(run.key), file = base + ".csv",
                     part = base + ".part.csv";
-  if (std::filesystem::exists(file)) return {read_records(file), {}};
+  if (std::filesystem::exists(file)) return {read_records(file), {}, NAN};
 
   chip::Experiment experiment(scene, {1, "auto"}, seed);
   SavedRun saved(run.folder, run.key, run.save_every);
@@ -257,7 +257,7 @@ Transport run_transport(const chip::Scene& scene, std::uint64_t seed, const Tran
   saved.remove();
   std::filesystem::remove(part);
   // From the file, so that what is measured now is what is measured when the file is read again.
-  return {read_records(file), experiment.observe({false, true})->state_hash};
+  return {read_records(file), experiment.observe({false, true})->state_hash, saved.earlier_computing()};
 }
 
 }  // namespace dmf::tools

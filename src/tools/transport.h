@@ -53,6 +53,7 @@ struct TransportRun {
 struct Transport {
   std::vector<TransportRecord> records;     ///< by time, then by id
   std::optional<std::uint64_t> state_hash;  ///< of the end; absent when the run was read from its file
+  double earlier_computing = NAN;           ///< SavedRun; NaN when the run was read from its file
 };
 
 /// Runs a scene with microparticles on one thread. Leaves `folder`/KEY.csv, a line a record; while it is

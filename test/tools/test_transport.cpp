@@ -72,6 +72,8 @@ TEST(Transport, KilledTwiceEndsWithTheBitsAndRecordsOfAnUninterruptedRun) {
   const Transport resumed = run_transport(with_microparticle(), 5, run);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   expect_same(resumed.records, whole.records);
+  EXPECT_EQ(whole.earlier_computing, 0);
+  EXPECT_GT(resumed.earlier_computing, 0) << "what was computed before the kills counts";
   EXPECT_FALSE(std::filesystem::exists(folder + "/tiny_R3_seed5.state"));
   EXPECT_FALSE(std::filesystem::exists(folder + "/tiny_R3_seed5.part.csv"));
 }
@@ -90,6 +92,7 @@ TEST(Transport, ReadsAFinishedRunAndRunsNothing) {
                   second = run_transport(with_microparticle(), 5, run);
   EXPECT_TRUE(first.state_hash);
   EXPECT_FALSE(second.state_hash);
+  EXPECT_TRUE(std::isnan(second.earlier_computing)) << "nobody knows any more";
   expect_same(first.records, second.records);
 }
 

@@ -51,9 +51,11 @@ Findings study_forces(const StudyOptions& options) {
                          QuasiStationaryRun seeded = run;
                          seeded.key += fmt::format(" seed={}", seed);
                          const QuasiStationary r = run_quasi_stationary(scene, seed, seeded);
-                         return std::vector<double>{r.velocity,         r.drive_x,      r.friction_x,
-                                                    r.drive_z,          r.height,       r.normal_force,
-                                                    r.contact_fraction, r.droplet_ahead};
+                         ResultRow row = std::vector<double>{
+                             r.velocity, r.drive_x,      r.friction_x,       r.drive_z,
+                             r.height,   r.normal_force, r.contact_fraction, r.droplet_ahead};
+                         row.computing = r.earlier_computing;
+                         return row;
                        }});
     }
   }

@@ -33,7 +33,9 @@ Findings study_inner_flow(const StudyOptions& options) {
                        seeded.key += fmt::format(" seed={}", seed);
                        const QuasiStationary r = run_quasi_stationary(scene, seed, seeded);
                        replace_file(run.folder + "/" + file_name(seeded.key) + "_cells.csv", r.flow.as_csv());
-                       return std::vector<double>{r.velocity, r.drive_z, r.droplet_ahead};
+                       ResultRow row = std::vector<double>{r.velocity, r.drive_z, r.droplet_ahead};
+                       row.computing = r.earlier_computing;
+                       return row;
                      }});
   }
   const Results results = run_cases("inner_flow", {"velocity", "drive_z", "droplet_ahead"}, cases, options);

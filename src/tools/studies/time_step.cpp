@@ -11,6 +11,7 @@
 #include "tools/cases.h"
 #include "tools/crossing.h"
 #include "tools/liquid.h"
+#include "tools/saved_run.h"
 #include "tools/sessile.h"
 
 namespace dmf::tools {

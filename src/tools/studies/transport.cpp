@@ -331,9 +331,10 @@ Findings run_study(const Description& study, const StudyOptions& options) {
                        TransportRun seeded = run;
                        seeded.key += fmt::format(" seed={}", seed);
                        const Transport transport = run_transport(scene, seed, seeded);
-                       std::vector<double> row;
+                       ResultRow row;
                        for (const Quantity& quantity : study.quantities)
-                         row.push_back(quantity.measure(transport.records));
+                         row.values.push_back(quantity.measure(transport.records));
+                       row.computing = transport.earlier_computing;
                        return row;
                      }});
   }
