@@ -5,16 +5,17 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 selection=(--label-exclude '^long$')
+targets=(all tests)
 while [ $# -gt 0 ]; do
   case "$1" in
-    --full) selection=() ;;
+    --full) selection=() targets+=(long_tests) ;;
     *) die "unknown option $1, allowed: --full" ;;
   esac
   shift
 done
 
 "$root/scripts/install_dependencies.sh"
-"$root/scripts/build.sh" all tests
+"$root/scripts/build.sh" "${targets[@]}"
 build=$(build_dir)
 use_build "$build"
 loopback_only
