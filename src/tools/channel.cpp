@@ -6,14 +6,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "engine/simulation.h"
+#include "chip/experiment.h"
 
 namespace dmf::tools {
-
-using engine::Parameters;
-using engine::Simulation;
-using engine::Vector3d;
-
 namespace {
 
 constexpr double looks_apart = 1;  // tau
@@ -43,23 +38,20 @@ Parabola parabola_of(const ChannelProfile& profile) {
 }  // namespace
 
 ChannelProfile run_channel(const ChannelRun& run) {
-  const Parameters& parameters = run.parameters;
-  Simulation simulation(parameters, engine::ContactAngleCurve::lan2016(), {1, "auto"});
-  const Vector3d off(0, 0, run.keeps_off);
-  simulation.fill_slab(parameters.domain.lower + off, parameters.domain.upper - off);
-  simulation.set_body_forces({{run.acceleration, 0, 0}, Vector3d::Zero()});
+  const engine::Parameters& parameters = run.scene.parameters;
+  chip::Experiment experiment(run.scene, {1, "auto"}, run.seed);
   const auto go_on = [&](double time) {
-    for (auto k = std::llround(time / parameters.time_step); k > 0; --k) simulation.step();
+    for (auto k = std::llround(time / parameters.time_step); k > 0; --k) experiment.step();
   };
   go_on(run.settle);
 
   const std::size_t bins = static_cast<std::size_t>(run.bins);
-  const Vector3d size = parameters.domain.size();
+  const engine::Vector3d size = parameters.domain.size();
   std::vector<double> beads(bins), velocity(bins), squares(bins);
   const int looks = std::max(1, static_cast<int>(run.measure / looks_apart));
   for (int look = 0; look < looks; ++look) {
     go_on(looks_apart);
-    const auto snapshot = simulation.observe({true});
+    const auto snapshot = experiment.observe({true});
     std::vector<double> of_slab(bins), along(bins), all(bins);
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
       const double fraction = (snapshot->positions[k].z() - parameters.domain.lower.z()) / size.z();

@@ -1,16 +1,16 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "engine/parameters.h"
+#include "chip/scene.h"
 
 namespace dmf::tools {
 
 /// Liquid between two walls that a body force drives along x. Single-threaded; reduced units throughout.
 struct ChannelRun {
-  engine::Parameters parameters;   ///< of the box; z sides are the walls
-  double keeps_off = 0;            ///< liquid is placed that far from the planes of the walls, r_c
-  double acceleration = 0.02;      ///< g, r_c / tau^2
+  chip::Scene scene;  ///< filled with liquid; z sides are the walls, gravity acts along x
+  std::uint64_t seed = 1;
   double settle = 0, measure = 0;  ///< tau
   int bins = 122;                  ///< slabs from wall to wall, an even number
 };

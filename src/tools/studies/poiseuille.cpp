@@ -9,12 +9,10 @@
 namespace dmf::tools {
 namespace {
 
-using engine::Parameters;
 using engine::Reflection;
-using engine::Side;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double acceleration = 0.02, half_width = 15.25, friction = 4.5;
+constexpr double acceleration = 0.02, half_width = 15.25, friction = 4.5;  // of the scenes
 
 /// What Lan's 2.3 leaves open, and what it says.
 struct Channel {
@@ -42,31 +40,13 @@ std::vector<Channel> channels() {
 }
 
 /// Lan 2.3.1: 60 x 3 x 30.5 between the planes, the fcc lattice of the liquid and the walls goes through
-/// both. Three cells must fit across, hence 4 r_c along y; along x nothing varies, and 20 r_c do.
+/// both. Three cells must fit across, hence 4 r_c along y; along x nothing varies, and the scene's 10 do.
 ChannelRun channel_run(const Channel& channel, const StudyOptions& options, std::uint64_t seed) {
   ChannelRun run;
-  Parameters& parameters = run.parameters;
-  const bool flat = channel.dimensions == 2;
-  parameters.dimensions = channel.dimensions;
-  parameters.domain.lower = {0, 0, -half_width};
-  parameters.domain.upper = {flat ? 30.0 : 10.0, 4, half_width};
-  const Side y_side = flat ? Side::reflecting : Side::periodic;
-  parameters.domain.lower_side = parameters.domain.upper_side = {Side::periodic, y_side, Side::wall};
-  parameters.boundaries.lower_reflection[2] = parameters.boundaries.upper_reflection[2] = channel.reflection;
-  parameters.wall.attraction = 9.68;
-  parameters.wall.lattice_constant = flat ? std::sqrt(2.0 / 4) : 1;  // four beads per r_c^3, or r_c^2
-  parameters.liquid.attraction = 18.75;
-  parameters.liquid.repulsion = 0;
-  parameters.liquid.random_amplitude = 3;
-  parameters.liquid.initial_density = parameters.liquid.bulk_density = 4;
-  parameters.time_step = 0.02;
-  parameters.integrator_lambda = 0.5;
-  apply(options, parameters);
-  parameters.seed = seed;
-  parameters.watchdog.evaporation = 1;
-  parameters.observe_interval = 1000;  // the droplet tracker has nothing to track
-  run.acceleration = acceleration;
-  run.keeps_off = half_width - 15;
+  run.scene = scene_for(options, channel.dimensions == 2 ? "poiseuille_2d" : "poiseuille");
+  engine::BoundaryParameters& boundaries = run.scene.parameters.boundaries;
+  boundaries.lower_reflection[2] = boundaries.upper_reflection[2] = channel.reflection;
+  run.seed = seed;
   // The slowest wave decays with rho h^2 / (pi^2 / 4 mu), some 350 tau. Lan: 2600 and 400 tau.
   run.settle = options.quick ? 20 : 2000;
   run.measure = options.quick ? 20 : 1000;
