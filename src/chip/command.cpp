@@ -51,6 +51,7 @@ struct Write {
     } else {
       json["volume"] = command.volume;
     }
+    if (!command.species.empty()) json["species"] = command.species;
   }
   void operator()(const AddMicroparticle& command) const {
     json["x"] = command.x;

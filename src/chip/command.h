@@ -43,6 +43,7 @@ struct DispenseDroplet {  ///< a droplet on the plate above (x, y), or a pancake
   double x = 0, y = 0;    ///< m
   double volume = 0;      ///< m^3; 0: `fills` says it
   double fills = 0;       ///< between two plates: so many times the electrode nearest to (x, y)
+  std::string species{};  ///< name of its liquid; empty: the first one
 };
 struct AddMicroparticle {   ///< a rigid body of beads at rest
   double x = 0, y = 0;      ///< m, of a sphere's centre; for `points` the place of their origin

@@ -56,6 +56,7 @@ Command read_dispense_droplet(const YamlReader& reader, const Units& units) {
   DispenseDroplet command;
   command.x = reader.quantity("x", Dimension::length, {}) * units.length_m;
   command.y = reader.quantity("y", Dimension::length, {}) * units.length_m;
+  command.species = reader.text("species", "");
   if (reader.has("fills")) {
     if (reader.has("radius") || reader.has("volume"))
       reader.report("fills", "given together with radius or volume, allowed: one of the three");

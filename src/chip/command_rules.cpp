@@ -98,6 +98,7 @@ class Rules {
     }
     if (!found_.empty()) return;
     try {
+      if (!command.species.empty()) engine::liquid_named(scene_.parameters, echo(command.species));
       for (auto& violation : violations(placement_of(command, scene_), scene_)) found_.push_back(violation);
     } catch (const engine::InvalidInput& refusal) {
       note("{}", refusal.what());
@@ -259,7 +260,9 @@ engine::DropletPlacement placement_of(const DispenseDroplet& command, const Scen
   const double volume =
       command.fills > 0 ? filling_volume(scene, at, command.fills) : command.volume / units.volume_m3();
   const double radius = sphere_radius(volume);
-  return {{at.x(), at.y(), scene.parameters.domain.lower.z() + radius}, radius};
+  engine::DropletPlacement droplet{{at.x(), at.y(), scene.parameters.domain.lower.z() + radius}, radius};
+  if (!command.species.empty()) droplet.species = engine::liquid_named(scene.parameters, command.species);
+  return droplet;
 }
 
 engine::MicroparticlePlacement placement_of(const AddMicroparticle& command, const Scene& scene) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -10,6 +11,8 @@ namespace dmf::chip {
 
 /// Name of Lan's own formula among the calibrations, of the wall and of microparticles.
 constexpr const char* kLanFormula = "lan2016";
+/// The largest number of a channel.
+constexpr std::uint64_t kMaxChannel = 1'000'000;
 
 /// Adds what a constructor or a look-up refused to the violations of a key.
 template <typename Action>

@@ -42,6 +42,7 @@ dmf_sim::Droplet to_droplet(const engine::DropletObservation& droplet,
   dmf_sim::Droplet message;
   message.id = droplet.id;
   message.parents = droplet.parents;
+  message.species = liquid_name(context.scene.parameters, droplet.species);
   message.beads = static_cast<std::uint32_t>(droplet.beads);
   message.centroid = to_point(droplet.centroid * units.length_m);
   message.velocity = to_vector(droplet.velocity * units.velocity_m_per_s());

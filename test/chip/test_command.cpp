@@ -41,6 +41,7 @@ std::vector<Command> one_of_each() {
           SetWettability{{-4e-4, 1.0 / 3e3}, {150, 40.1}},
           LoadPattern{"for\"ward\n\xc3\xa4 \x01"},
           DispenseDroplet{-1e-5 / 3, 2e-4, 4.1887902047863905e-15},
+          DispenseDroplet{0, 0, 0, 1.5, "oil \"heavy\""},
           Remove{7},
           Reset{},
           sphere(),
@@ -70,6 +71,8 @@ TEST(CommandJson, RoundTripsToTheLastBit) {
   const auto dispense = std::get<DispenseDroplet>(command_from_json(to_json(one_of_each()[6])));
   EXPECT_EQ(dispense.x, -1e-5 / 3);
   EXPECT_EQ(dispense.volume, 4.1887902047863905e-15);
+  EXPECT_EQ(dispense.species, "");
+  EXPECT_EQ(std::get<DispenseDroplet>(command_from_json(to_json(one_of_each()[7]))).species, "oil \"heavy\"");
   EXPECT_EQ(std::get<LoadPattern>(command_from_json(to_json(one_of_each()[5]))).name,
             "for\"ward\n\xc3\xa4 \x01");
 }

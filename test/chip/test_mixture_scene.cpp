@@ -64,6 +64,24 @@ TEST(MixtureScene, HasDropletsOfEitherLiquid) {
   EXPECT_EQ(scene.droplets[1].species, 1u);
 }
 
+TEST(MixtureScene, ADropletIsDispensedOfTheLiquidThatIsNamed) {
+  const Scene scene =
+      parsed(changed("droplets: [{center: [0, 0], radius: 3.5}]\nfills: [{species: oil}, {lower: [-9, -9, "
+                     "0], upper: [9, 9, 1]}]\n",
+                     ""));
+  Experiment experiment(scene, {1, "auto"});
+  const double length = scene.units.length_m, volume = 60 * scene.units.volume_m3();
+  EXPECT_TRUE(experiment.apply(DispenseDroplet{-5 * length, 0, volume}).success);
+  EXPECT_TRUE(experiment.apply(DispenseDroplet{5 * length, 0, volume, 0, "oil"}).success);
+  const std::string refused = experiment.apply(DispenseDroplet{0, 6 * length, volume, 0, "water"}).message;
+  EXPECT_TRUE(holds(refused, "species water, allowed: liquid, oil"));
+  for (int k = 0; k < 50; ++k) experiment.step();
+  const auto snapshot = experiment.observe();
+  ASSERT_EQ(snapshot->droplets.size(), 2u);
+  for (const engine::DropletObservation& droplet : snapshot->droplets)
+    EXPECT_EQ(droplet.species, droplet.centroid.x() > 0 ? 1u : 0u);
+}
+
 TEST(MixtureScene, RunsWithItsMediumAroundTheDropletAndComesBackFromASave) {
   const Scene scene = parsed(changed(", {lower: [-9, -9, 0], upper: [9, 9, 1]}", ""));
   Experiment experiment(scene, {1, "auto"});

@@ -50,7 +50,7 @@ def request(name, rng):
     if name == "load_pattern":
         return ("no " + text(rng),)
     if name == "dispense_droplet":
-        return (place(rng), number(rng), number(rng), rng.choice([0.0, 1e9] + NO_NUMBERS))
+        return (place(rng), number(rng), number(rng), rng.choice([0.0, 1e9] + NO_NUMBERS), rng.choice(["", text(rng)]))
     if name == "add_microparticle":
         return {"x": place(rng), "y": number(rng), "height": number(rng), "radius": number(rng),
                 "beads": rng.randrange(2**32), "mass": number(rng), "attraction_mdpd": number(rng),

@@ -43,13 +43,14 @@ BAD_INPUT = [
     ("set_wettability", ([], []), ["positions"]),
     ("load_pattern", ("blank",), ["blank", "blink"]),
     ("load_pattern", ("",), ["blink"]),
-    ("dispense_droplet", (-9e-5, 0.0, 1e-13, 0.0), ["occupied"]),
-    ("dispense_droplet", (1.0, 0.0, 1e-13, 0.0), ["x", "1"]),
-    ("dispense_droplet", (9e-5, 0.0, -1e-13, 0.0), ["volume", "-1e-13"]),
-    ("dispense_droplet", (9e-5, 0.0, 1e-9, 0.0), ["radius"]),
-    ("dispense_droplet", (9e-5, 0.0, 1e-18, 0.0), ["20"]),
-    ("dispense_droplet", (9e-5, NAN, 1e-13, 0.0), ["nan"]),
-    ("dispense_droplet", (9e-5, 0.0, INF, 0.0), ["inf"]),
+    ("dispense_droplet", (-9e-5, 0.0, 1e-13, 0.0, ""), ["occupied"]),
+    ("dispense_droplet", (1.0, 0.0, 1e-13, 0.0, ""), ["x", "1"]),
+    ("dispense_droplet", (9e-5, 0.0, -1e-13, 0.0, ""), ["volume", "-1e-13"]),
+    ("dispense_droplet", (9e-5, 0.0, 1e-9, 0.0, ""), ["radius"]),
+    ("dispense_droplet", (9e-5, 0.0, 1e-18, 0.0, ""), ["20"]),
+    ("dispense_droplet", (9e-5, NAN, 1e-13, 0.0, ""), ["nan"]),
+    ("dispense_droplet", (9e-5, 0.0, INF, 0.0, ""), ["inf"]),
+    ("dispense_droplet", (9e-5, 0.0, 1e-13, 0.0, "oil"), ["oil", "liquid"]),
     ("remove", (99, 0), ["droplet 99"]),
     ("remove", (0, 0), ["droplet 0", "microparticle 0"]),
     ("remove", (1, 1), ["droplet 1", "microparticle 1"]),
@@ -173,7 +174,7 @@ class ServicesTest(unittest.TestCase):
 
     def test_droplets_come_and_go(self):
         droplets = Listener("/chip/droplets", DropletArray)
-        self.accepted(self.chip.dispense_droplet(9e-5, 0, 8e-14, 0))
+        self.accepted(self.chip.dispense_droplet(9e-5, 0, 8e-14, 0, ""))
         self.accepted(self.chip.step(50))
         two = droplets.wait(lambda m: m.step == 50 and len(m.droplets) == 2).droplets
         new = max(two, key=lambda d: d.centroid.x)

@@ -45,7 +45,7 @@ class SoakTest(unittest.TestCase):
                 lambda: chip.set_electrode_voltages([rng.randrange(4)], [rng.uniform(0, 80)]),
                 lambda: chip.set_wettability([0.0], [rng.uniform(60, 120)]),
                 lambda: chip.load_pattern("blink"),
-                lambda: chip.dispense_droplet(rng.uniform(-1e-4, 1e-4), rng.uniform(-5e-5, 5e-5), 3e-14, 0.0),
+                lambda: chip.dispense_droplet(rng.uniform(-1e-4, 1e-4), rng.uniform(-5e-5, 5e-5), 3e-14, 0.0, ""),
                 lambda: chip.add_microparticle(x=rng.uniform(-1e-4, 1e-4), y=rng.uniform(-5e-5, 5e-5), radius=1e-5),
                 lambda: chip.remove(rng.randrange(1, 9), 0),
                 lambda: chip.remove(0, rng.randrange(1, 9)),

@@ -101,6 +101,7 @@ TEST_F(ConvertTest, DropletIsInSiUnits) {
   const auto& droplet = droplets[0];
   EXPECT_EQ(droplet.id, 5u);
   EXPECT_EQ(droplet.parents, (std::vector<std::uint32_t>{2, 3}));
+  EXPECT_EQ(droplet.species, "liquid");
   EXPECT_DOUBLE_EQ(droplet.centroid.z, 3 * 2e-5);
   EXPECT_DOUBLE_EQ(droplet.centroid_mdpd.z, 3);
   EXPECT_DOUBLE_EQ(droplet.velocity.x, 0.5 * 5);

@@ -113,7 +113,10 @@ TEST(ResultTable, ReadsFilesWithoutTimesAndCutLines) {
   EXPECT_EQ(table.seeds_of("R=5"), (std::vector<int>{1, 2, 10})) << "as numbers";
   EXPECT_FALSE(table.has("R=6 seed=1")) << "its line was cut";
   EXPECT_TRUE(std::isnan(table.row("R=5 seed=1").computing));
-  table.add("R=6 seed=1", {{7, 8}, 12.5, "abc1234"});
+  ResultRow row({7, 8});
+  row.computing = 12.5;
+  row.engine = "abc1234";
+  table.add("R=6 seed=1", row);
   const ResultTable again(file, {"a", "b"});
   EXPECT_EQ(again.row("R=5 seed=10").values, (std::vector<double>{3, 4}));
   EXPECT_EQ(again.row("R=6 seed=1").computing, 12.5);
