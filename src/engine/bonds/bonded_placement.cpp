@@ -116,6 +116,23 @@ bool in_domain(const Vector3d& p, const Domain& domain) {
   return true;
 }
 
+/// @param ids  of beads that are there. @param species  of each of them.
+void give_species(Beads& beads, const std::vector<std::uint32_t>& ids,
+                  const std::vector<std::uint8_t>& species) {
+  const bool all_first = std::all_of(species.begin(), species.end(), [](std::uint8_t k) { return k == 0; });
+  if (beads.species.empty() && all_first) return;
+  if (beads.species.empty()) beads.species.assign(beads.size(), 0);
+  std::vector<std::size_t> index_of_id(*std::max_element(beads.id.begin(), beads.id.end()) + 1);
+  for (std::size_t i = 0; i < beads.size(); ++i) index_of_id[beads.id[i]] = i;
+  for (std::size_t k = 0; k < ids.size(); ++k) beads.species[index_of_id[ids[k]]] = species[k];
+}
+
+/// Empty when there is a liquid of that number.
+std::string unknown_species(std::uint32_t species, const Parameters& parameters) {
+  const std::size_t last = parameters.mixture.liquids.size();
+  return species <= last ? "" : fmt::format("species: {}, allowed: 0 to {}", species, last);
+}
+
 std::string outside_of(const Domain& domain) {
   return fmt::format("allowed: within {} to {} where sides are not periodic (r_c)", text_of(domain.lower),
                      text_of(domain.upper));
@@ -137,6 +154,15 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
     return fmt::format("allowed: less than {:.4g}, {}", longest,
                        law.max_length() <= longest ? "the spring's maximum" : "a third of a periodic side");
   };
+  const std::size_t beads = placement.points.empty() ? placement.beads : placement.points.size();
+  const std::size_t of_species = placement.species.size();
+  if (of_species > 1 && of_species != beads)
+    found.push_back(fmt::format("species: {} of them, allowed: 1, or {}, one a bead", of_species, beads));
+  for (const std::uint32_t species : placement.species)
+    if (const std::string unknown = unknown_species(species, parameters); !unknown.empty()) {
+      found.push_back(unknown);
+      break;
+    }
   if (!placement.stretching_force.allFinite())
     found.push_back(
         fmt::format("stretching_force: {}, allowed: finite", text_of(placement.stretching_force)));
@@ -177,7 +203,7 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
   }
   // A bond between two beads of mass 1 oscillates with sqrt(2 k), the beads of a long chain with up to twice
   // sqrt(k).
-  const bool is_pair = placement.points.empty() ? placement.beads == 2 : placement.points.size() == 2;
+  const bool is_pair = beads == 2;
   const double steepest = law.slope(law.reach(spring_reach_energy * parameters.liquid.temperature));
   const std::string coarse =
       too_coarse("a chain of this spring", std::sqrt((is_pair ? 2 : 4) * steepest), parameters);
@@ -194,6 +220,8 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
       found.push_back(fmt::format("{}: {}, allowed: {}", key, value, allowed));
   };
   if (s.spring == SpringKind::fene) found.push_back("spring: fene, allowed: wlc, harmonic");
+  if (const std::string unknown = unknown_species(placement.species, parameters); !unknown.empty())
+    found.push_back(unknown);
   within("shear_modulus", s.shear_modulus, 1e-9, 1e5, "above 0 up to 1e5 (k_BT / r_c^2)");
   within("max_stretch", s.max_stretch, 1.2, 10, "1.2 to 10");
   within("bending_rigidity", s.bending_rigidity, 0, 1e5, "0 to 1e5 (k_BT)");
@@ -250,7 +278,8 @@ std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, 
   return chains;
 }
 
-std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites, const Bonds& bonds,
+std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites,
+                                      const std::vector<std::uint8_t>& species, const Bonds& bonds,
                                       const Parameters& parameters, std::uint64_t step,
                                       std::uint32_t& next_id) {
   const Domain& domain = parameters.domain;
@@ -306,6 +335,7 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
   }
   const std::vector<std::uint32_t> added = place_beads(beads, free_sites, 0, parameters, step, next_id);
   for (std::size_t k = 0; k < without.size(); ++k) ids[without[k]] = added[k];
+  give_species(beads, ids, species);
   return ids;
 }
 
