@@ -31,6 +31,11 @@ engine::Parameters parameters_of(const MembraneRun& how) {
   parameters.time_step = how.time_step;
   parameters.integrator = how.integrator;
   parameters.seed = how.seed;
+  if (how.own_repulsion) {
+    const double amplitude = parameters.liquid.random_amplitude;
+    parameters.mixture.liquids = {{"membrane", {*how.own_repulsion, 0, amplitude}, 3, 3}};
+    parameters.mixture.pairs = {{"liquid", "membrane", {how.liquid_on_membrane, 0, amplitude}}};
+  }
   return parameters;
 }
 
@@ -104,7 +109,8 @@ MembraneResult run_membrane(const MembraneRun& how) {
   for (const auto& edge : network.edges())
     result.mean_edge +=
         (mesh.vertices[edge.b] - mesh.vertices[edge.a]).norm() / static_cast<double>(network.edges().size());
-  simulation.add_membrane({std::make_shared<const engine::TriangleMesh>(std::move(mesh)), how.stiffness});
+  simulation.add_membrane({std::make_shared<const engine::TriangleMesh>(std::move(mesh)), how.stiffness,
+                           how.own_repulsion ? 1u : 0u});
 
   const auto steps_of = [&](double time) {
     return static_cast<std::uint64_t>(std::llround(time / how.time_step));

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "engine/membrane.h"
 
@@ -15,7 +16,11 @@ struct MembraneRun {
   int subdivisions = 3;
   engine::MembraneStiffness stiffness;
   double repulsion = 25;  ///< a; 0: liquid that feels friction and noise only, and goes through the membrane
-  double margin = 2;      ///< from the membrane to the sides of the box
+  /// With it the membrane is of a species of its own, whose beads repel each other so; else it is of the
+  /// liquid.
+  std::optional<double> own_repulsion;
+  double liquid_on_membrane = 25;  ///< a of liquid and such a membrane
+  double margin = 2;               ///< from the membrane to the sides of the box
   double settle = 10, measure = 50;
 };
 
