@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <set>
 
 #include "engine/membrane.h"
+#include "engine/observe/snapshot.h"
 
 namespace dmf::tools {
 
@@ -39,5 +41,8 @@ struct MembraneResult {
   double temperature = 0;
 };
 MembraneResult run_membrane(const MembraneRun& how);
+
+/// Ids of the beads inside the first membrane that are no part of it.
+std::set<std::uint32_t> enclosed_liquid(const engine::Snapshot& snapshot, const engine::Domain& domain);
 
 }  // namespace dmf::tools

@@ -10,12 +10,14 @@
 #include "engine/cell_grid.h"
 #include "engine/noise.h"
 #include "engine/placement.h"
+#include "engine/walls/solid.h"
 
 namespace dmf::engine {
 namespace {
 
 constexpr int most_tries = 200;    ///< for the next bead of a walk, and for a whole chain
 constexpr double rounding = 1e-9;  ///< of a number that was told and is given back
+constexpr const char* in_solid = "in the solid of the label grid, allowed: outside of it (r_c)";
 
 /// Uniform numbers of one chain.
 class Draws {
@@ -41,14 +43,14 @@ class Draws {
   std::uint32_t count_ = 0;
 };
 
-/// The box that beads must lie in; without sides where it is a whole period.
-bool inside(const Vector3d& p, const ChainPlacement& placement, const Domain& domain) {
+/// The box that beads must lie in, outside of the solid; without sides where it is a whole period.
+bool inside(const Vector3d& p, const ChainPlacement& placement, const Domain& domain, const Solid& solid) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool endless = domain.periodic(axis) && placement.lower[axis] <= domain.lower[axis] &&
                          placement.upper[axis] >= domain.upper[axis];
     if (!endless && (p[axis] < placement.lower[axis] || p[axis] > placement.upper[axis])) return false;
   }
-  return true;
+  return !solid.contains(p.cast<float>());
 }
 
 Vector3d somewhere(Draws& draws, const Vector3d& lower, const Vector3d& upper) {
@@ -57,29 +59,30 @@ Vector3d somewhere(Draws& draws, const Vector3d& lower, const Vector3d& upper) {
   return p;
 }
 
-std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement,
-                                          const Domain& domain) {
+std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement, const Domain& domain,
+                                          const Solid& solid) {
   std::vector<Vector3d> sites{somewhere(draws, placement.lower, placement.upper)};
+  if (!inside(sites.front(), placement, domain, solid)) return std::nullopt;
   while (sites.size() < placement.beads) {
     int tries = 0;
     Vector3d next;
     do {
       if (++tries > most_tries) return std::nullopt;
       next = sites.back() + placement.bond_length * draws.direction();
-    } while (!inside(next, placement, domain));
+    } while (!inside(next, placement, domain, solid));
     sites.push_back(next);
   }
   return sites;
 }
 
-std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement,
-                                          const Domain& domain) {
+std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement, const Domain& domain,
+                                          const Solid& solid) {
   const Vector3d bond = placement.bond_length * placement.direction.normalized();
   const Vector3d first = somewhere(draws, placement.lower, placement.upper);
   std::vector<Vector3d> sites;
   for (std::uint32_t k = 0; k < placement.beads; ++k) {
     sites.push_back(first + static_cast<double>(k) * bond);
-    if (!inside(sites.back(), placement, domain)) return std::nullopt;
+    if (!inside(sites.back(), placement, domain, solid)) return std::nullopt;
   }
   return sites;
 }
@@ -148,6 +151,7 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
   std::vector<std::string> found = violations(placement.spring);
   if (!found.empty()) return found;
   const Domain& domain = parameters.domain;
+  const Solid solid(parameters);
   const SpringLaw law = SpringLaw::of(placement.spring, parameters.liquid.temperature);
   const double longest = std::min(law.max_length(), longest_bond(domain));
   const auto of_longest = [&] {
@@ -193,6 +197,8 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
       if (!in_domain(placement.points[k], domain))
         found.push_back(
             fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), outside_of(domain)));
+      else if (solid.contains(placement.points[k].cast<float>()))
+        found.push_back(fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), in_solid));
       else if (const double r = k > 0 ? (placement.points[k] - placement.points[k - 1]).norm() : 0;
                !(r < longest))
         found.push_back(
@@ -239,6 +245,10 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
     if (!in_domain(mesh.vertices[k], parameters.domain))
       found.push_back(fmt::format("mesh: vertex {} at {}, {}", k, text_of(mesh.vertices[k]),
                                   outside_of(parameters.domain)));
+  const Solid solid(parameters);
+  for (std::size_t k = 0; k < mesh.vertices.size() && found.empty(); ++k)
+    if (solid.contains(mesh.vertices[k].cast<float>()))
+      found.push_back(fmt::format("mesh: vertex {} at {}, {}", k, text_of(mesh.vertices[k]), in_solid));
   const MembraneNetwork network(mesh, s);
   const double longest = longest_bond(parameters.domain);
   for (const MembraneNetwork::SpringEdge& edge : network.edges()) {
@@ -257,14 +267,15 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
 
 std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, const Parameters& parameters,
                                                std::uint64_t step, std::uint32_t first_id) {
+  const Solid solid(parameters);
   std::vector<std::vector<Vector3d>> chains;
   if (!placement.points.empty()) chains.push_back(placement.points);
   for (std::uint32_t k = 0; chains.size() < placement.count; ++k) {
     Draws draws(parameters.seed, step, first_id + k);
     std::optional<std::vector<Vector3d>> sites;
     for (int tries = 0; !sites && tries < most_tries; ++tries)
-      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters.domain)
-                                                      : walk(draws, placement, parameters.domain);
+      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters.domain, solid)
+                                                      : walk(draws, placement, parameters.domain, solid);
     if (!sites)
       throw InvalidInput(fmt::format(
           "chain {} of {}: {} beads with bonds of {:.4g} r_c find no room in the box from {} to {}, allowed: "
