@@ -21,8 +21,9 @@ Findings study_constriction(const StudyOptions& options) {
       csv << fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", seen.time, seen.x, seen.length,
                          seen.width, seen.elongation, seen.area, seen.volume);
     });
-    return std::vector<double>{r.passage, r.elongation, r.recovered, r.speed_before, r.speed_inside,
-                               r.area,    r.area_error, r.volume,    r.volume_error, r.leaked};
+    return std::vector<double>{r.passage,      r.elongation,   r.recovered, r.width,
+                               r.speed_before, r.speed_inside, r.area,      r.area_error,
+                               r.volume,       r.volume_error, r.leaked};
   };
   const std::string cell = "red_cell";
   const Results results =

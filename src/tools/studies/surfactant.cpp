@@ -12,11 +12,19 @@ namespace dmf::tools {
 namespace {
 
 const std::vector<double> coverages{0, 0.25, 0.5, 1, 1.5, 2};  // of a film's surface, 1 / r_c^2
-const std::vector<double> floated{0, 1, 2};                    // the same, with a microparticle on it
-constexpr double attraction = -15;                             // A_ls of that one, hydrophobic
+
+/// A microparticle on a film.
+struct Floated {
+  double attraction;  ///< A_ls
+  double coverage;    ///< 1 / r_c^2
+};
+/// Lan's hydrophobic one, which the film swallows by itself, and one that floats at 111 degrees.
+const std::vector<Floated> floated{{-15, 0}, {-15, 1}, {-6, 0}, {-6, 1}};
 
 std::string label_of(double coverage) { return fmt::format("coverage={:g}", coverage); }
-std::string label_of_floating(double coverage) { return fmt::format("floating coverage={:g}", coverage); }
+std::string label_of(const Floated& one) {
+  return fmt::format("floating A={:g} coverage={:g}", one.attraction, one.coverage);
+}
 
 SurfactantFilmRun film_of(const StudyOptions& options, double coverage, std::uint64_t seed) {
   SurfactantFilmRun run;
@@ -54,11 +62,11 @@ Results run_films(const StudyOptions& options) {
 
 Results run_floated(const StudyOptions& options) {
   std::vector<Case> cases;
-  for (const double coverage : floated)
-    cases.push_back({label_of_floating(coverage), [=, &options](std::uint64_t seed) {
+  for (const Floated& one : floated)
+    cases.push_back({label_of(one), [=, &options](std::uint64_t seed) {
                        FloatingRun run;
-                       run.attraction = attraction;
-                       run.surfactant = coverage;
+                       run.attraction = one.attraction;
+                       run.surfactant = one.coverage;
                        run.seed = seed;
                        run.parameters.time_step = options.time_step_or(run.parameters.time_step);
                        if (options.quick) run.settle = run.measure = 10;
@@ -73,7 +81,7 @@ Results run_floated(const StudyOptions& options) {
 Findings study_surfactant(const StudyOptions& options) {
   std::vector<std::string> labels;
   for (const double coverage : coverages) labels.push_back(label_of(coverage));
-  for (const double coverage : floated) labels.push_back(label_of_floating(coverage));
+  for (const Floated& one : floated) labels.push_back(label_of(one));
   require_known(options, labels);
   // --only chooses among both parts.
   StudyOptions films = options, floats = options;
@@ -106,11 +114,11 @@ Findings study_surfactant(const StudyOptions& options) {
   }
   if (!floats.only.empty()) {
     const Results results = run_floated(floats);
-    for (const double coverage : floated) {
-      const std::string of = label_of_floating(coverage);
-      findings.push_back(results.finding(of, "immersion", "immersion of a microparticle of A_ls -15", 3));
+    for (const Floated& one : floated) {
+      const std::string of = label_of(one);
+      findings.push_back(results.finding(of, "immersion", "immersion of a microparticle", 3));
       findings.push_back(results.finding(of, "height", "its centre over the surface (r_c)", 3));
-      findings.push_back(results.finding(of, "angle", "its contact angle (degrees)", 1));
+      findings.push_back(results.finding(of, "angle", "its contact angle, 0 when swallowed (degrees)", 1));
     }
   }
   return findings;
