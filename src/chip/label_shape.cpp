@@ -14,6 +14,15 @@ bool LabelShape::holds(const Vector3d& at, const engine::Domain& domain) const {
     const Vector3d from_middle = domain.nearest_image(at - 0.5 * (lower + upper));
     return (from_middle.cwiseAbs().array() <= 0.5 * (upper - lower).array()).all();
   }
+  if (kind == Kind::prism) {
+    const int first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
+    const Eigen::Vector2d middle = bounding_box(outline).center();
+    Vector3d from_middle = at;
+    from_middle[first] -= middle.x();
+    from_middle[second] -= middle.y();
+    from_middle = domain.nearest_image(from_middle);
+    return distance(middle + Eigen::Vector2d(from_middle[first], from_middle[second]), outline) == 0;
+  }
   Vector3d from = domain.nearest_image(at - center);
   if (kind == Kind::cylinder) from[axis] = 0;
   return from.norm() <= radius;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chip/command_reader.h"
+#include "chip/scene_mixture.h"
 #include "chip/scene_sections.h"
 #include "engine/bonds/mesh.h"
 
@@ -20,6 +21,7 @@ using engine::YamlReader;
 namespace {
 
 constexpr std::size_t kMaxSections = 10'000;
+constexpr std::size_t kMaxSpecies = 100'000;  // as many as a chain may have beads
 constexpr std::uint64_t kMaxSubdivisions = 6;
 constexpr std::size_t kMaxVertices = 100'000;  // of all membranes: a line of the file makes up to 40,962
 // The engine checks its own ranges (violations), so that each stands once; here any number goes.
@@ -50,9 +52,22 @@ std::optional<Vector3d> read_point(const YamlReader& section, const std::string&
   return at.size() == 3 ? std::optional<Vector3d>({at[0], at[1], at[2]}) : std::nullopt;
 }
 
-engine::ChainPlacement read_chain(const YamlReader& section, const engine::Domain& domain) {
+/// `species: oil`, of all beads, or `species: [liquid, oil]`, one a bead. The engine compares with their
+/// number.
+std::vector<std::uint32_t> read_species_of_beads(const YamlReader& section,
+                                                 const engine::Parameters& parameters) {
+  std::vector<std::uint32_t> species;
+  for (const std::string& name : section.text_or_texts("species", {1, kMaxSpecies}))
+    if (!attempt(section, "species", [&] { species.push_back(engine::liquid_named(parameters, name)); }))
+      return {};
+  return species;
+}
+
+engine::ChainPlacement read_chain(const YamlReader& section, const engine::Parameters& parameters) {
+  const engine::Domain& domain = parameters.domain;
   engine::ChainPlacement placement;
   placement.spring = read_spring(section);
+  placement.species = read_species_of_beads(section, parameters);
   placement.stretching_force = read_vector(section, "stretching_force", Dimension::force);
   if (section.has("points")) {
     for (const auto& row : section.rows("points", Dimension::length, {}, {2}, {3, 3}))
@@ -131,7 +146,8 @@ engine::MembranePlacement read_membrane(const YamlReader& section, Scene& scene)
       turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis);
   }
   for (Vector3d& vertex : mesh.vertices) vertex = centre + turned * vertex;
-  return {std::make_shared<const engine::TriangleMesh>(std::move(mesh)), read_stiffness(section)};
+  return {std::make_shared<const engine::TriangleMesh>(std::move(mesh)), read_stiffness(section),
+          read_species(section, scene.parameters)};
 }
 
 /// What is wrong with the rest of the file may be the cause of what would be told here.
@@ -147,7 +163,7 @@ void check(const Placement& placement, const YamlReader& root, const YamlReader&
 
 void read_chains(const YamlReader& root, Scene& scene) {
   for (const YamlReader& section : root.mappings("chains", {0, kMaxSections})) {
-    scene.chains.push_back(read_chain(section, scene.parameters.domain));
+    scene.chains.push_back(read_chain(section, scene.parameters));
     check(scene.chains.back(), root, section, scene);
   }
 }

@@ -83,9 +83,11 @@ class Digest {
     (*this)(kind, stiffness, length, max_length, persistence_length);
   }
   void add(const engine::ChainPlacement& placement) {
-    const auto& [spring, points, count, beads, shape, bond_length, lower, upper, direction,
+    const auto& [spring, species, points, count, beads, shape, bond_length, lower, upper, direction,
                  stretching_force] = placement;
     (*this)(spring, points, count, beads, shape, bond_length, lower, upper, direction, stretching_force);
+    // Only where they are told: the hashes of older scenes stay.
+    if (!species.empty()) add(species);
   }
   void add(const engine::MembraneStiffness& stiffness) {
     const auto& [spring, shear_modulus, max_stretch, bending_rigidity, flat, area_stiffness,
@@ -94,8 +96,9 @@ class Digest {
             volume_stiffness, volume_ratio);
   }
   void add(const engine::MembranePlacement& placement) {
-    const auto& [mesh, stiffness] = placement;
+    const auto& [mesh, stiffness, species] = placement;
     (*this)(mesh->vertices, mesh->triangles, stiffness);
+    if (species > 0) add(species);
   }
   void add(const engine::LiquidParameters& liquid) {
     const auto& [attraction, repulsion, cutoff_radius, repulsion_radius, random_amplitude,

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kMaxPictures = 4000;
 constexpr std::size_t kMaxShapes = 10'000;
+constexpr std::size_t kMaxCorners = 1000;  // of a prism's outline
 constexpr std::uint64_t kMaxRepeats = 1000;
 /// Work on shapes that a scene may ask for: tests of a voxel against a shape, some seconds.
 constexpr double kMaxTests = 2e9;
@@ -137,6 +138,13 @@ LabelShape read_shape(const YamlReader& entry) {
     shape.axis = cylinder->choice("axis", {"x", "y", "z"})[0] - 'x';
     shape.center = read_place(*cylinder, "center");
     shape.radius = cylinder->quantity("radius", Dimension::length, Range::above(0));
+  } else if (const auto prism = entry.optional_mapping("prism")) {
+    shape.kind = LabelShape::Kind::prism;
+    shape.axis = prism->choice("axis", {"x", "y", "z"})[0] - 'x';
+    for (const auto& row : prism->rows("outline", Dimension::length, {}, {3, kMaxCorners}, {2, 2}))
+      shape.outline.emplace_back(row[0], row[1]);
+    if (const std::string fault = polygon_fault(shape.outline); !fault.empty() && !prism->failed())
+      prism->report("outline", fault);
   }
   return shape;
 }
@@ -156,8 +164,9 @@ void read_shapes(const YamlReader& section, const engine::Domain& domain, LabelG
   double tests = 0;
   for (const YamlReader& entry : section.mappings("shapes", {0, kMaxShapes})) {
     int given = 0;
-    for (const char* kind : {"box", "ball", "cylinder"}) given += entry.has(kind);
-    if (given != 1) entry.report("", fmt::format("{} shapes, allowed: one of box, ball, cylinder", given));
+    for (const char* kind : {"box", "ball", "cylinder", "prism"}) given += entry.has(kind);
+    if (given != 1)
+      entry.report("", fmt::format("{} shapes, allowed: one of box, ball, cylinder, prism", given));
     const LabelShape shape = read_shape(entry);
     const std::vector<Vector3d> shifts = read_shifts(entry);
     const bool solid = entry.choice("label", {"solid", "fluid"}, "solid") == "solid";

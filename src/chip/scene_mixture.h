@@ -10,7 +10,7 @@ namespace dmf::chip {
 void read_mixture(const engine::YamlReader& root, engine::Parameters& parameters);
 /// Notes a section with contact angles where the wall's attraction is given (fixed_wall_attraction()).
 void refuse_contact_angles(const engine::YamlReader& root, const engine::Parameters& parameters);
-/// The name of a liquid under `species`; the first one without it.
+/// The liquid that `species` names; the first one without it.
 std::uint32_t read_species(const engine::YamlReader& section, const engine::Parameters& parameters);
 /// `fills`; after the domain.
 void read_fills(const engine::YamlReader& root, Scene& scene);

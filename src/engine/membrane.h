@@ -10,12 +10,13 @@
 
 namespace dmf::engine {
 
-/// A membrane to be placed: a closed surface of beads of the liquid (bonds/membrane_network.h), where its
-/// mesh is. Its beads take the places of liquid beads as those of a chain do (chain.h): liquid that is there
-/// already stands inside and outside of it.
+/// A membrane to be placed: a closed surface of beads (bonds/membrane_network.h), where its mesh is. They
+/// take the places of liquid beads as those of a chain do (chain.h): liquid that is there already stands
+/// inside and outside of it.
 struct MembranePlacement {
   std::shared_ptr<const TriangleMesh> mesh;  ///< in the chip's frame, r_c; 4 to 1e5 vertices
   MembraneStiffness stiffness;
+  std::uint32_t species = 0;  ///< number of the liquid that its beads are of (mixture.h)
 };
 
 /// All that is wrong with a placement, each as "key: value, allowed: what would work": numbers out of range,

@@ -86,12 +86,12 @@ std::shared_ptr<const Snapshot> Simulation::observe(const ObserveRequest& reques
   snapshot->membranes = s.bonds.observe_membranes(s.beads);
   Virial virial;
   if (request.virial) {
-    virial = virial_of(s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.parameters);
+    virial = virial_of(s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.bonds, s.parameters);
     snapshot->virial = virial.total;
   }
   if (request.stress)
     snapshot->stress =
-        stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.parameters);
+        stress_profile(*request.stress, s.beads, s.pairs.blocks(), s.pairs.ghosts(), s.bonds, s.parameters);
   if (request.hash) snapshot->state_hash = state_hash(s.step, s.beads, s.wall, s.microparticles, s.bonds);
   if (request.wetted && s.parameters.domain.has_wall())
     snapshot->wetted = wetted_area(s.beads, s.parameters.domain.lower.z(), s.parameters);

@@ -121,7 +121,8 @@ class Simulation {
 
  private:
   std::size_t place(const std::vector<Vector3d>& sites, std::uint32_t species);
-  std::vector<std::uint32_t> take(const std::vector<Vector3d>& sites);
+  std::vector<std::uint32_t> take(const std::vector<Vector3d>& sites,
+                                  const std::vector<std::uint8_t>& species);
   void require_bonds_allowed() const;
   void refresh();
 

@@ -42,11 +42,12 @@ void require_sound(const std::vector<std::string>& wrong) {
 }
 }  // namespace
 
-std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites) {
+std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites,
+                                            const std::vector<std::uint8_t>& species) {
   State& s = *state_;
   s.require_room_for_bonded(static_cast<double>(sites.size()));
   s.microparticles.require_clear(sites);
-  return take_sites(s.beads, sites, s.bonds, s.parameters, s.step, s.next_bead_id);
+  return take_sites(s.beads, sites, species, s.bonds, s.parameters, s.step, s.next_bead_id);
 }
 
 void Simulation::require_bonds_allowed() const {
@@ -64,8 +65,13 @@ std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
   const std::uint32_t first = s.bonds.next_chain();
   const std::vector<std::vector<Vector3d>> chains = chain_sites(placement, s.parameters, s.step, first);
   std::vector<Vector3d> sites;
-  for (const std::vector<Vector3d>& chain : chains) sites.insert(sites.end(), chain.begin(), chain.end());
-  const std::vector<std::uint32_t> ids = take(sites);
+  std::vector<std::uint8_t> species;
+  for (const std::vector<Vector3d>& chain : chains) {
+    sites.insert(sites.end(), chain.begin(), chain.end());
+    for (std::size_t k = 0; k < chain.size(); ++k)
+      species.push_back(static_cast<std::uint8_t>(placement.species_of(k)));
+  }
+  const std::vector<std::uint32_t> ids = take(sites, species);
   auto next = ids.begin();
   for (const std::vector<Vector3d>& chain : chains) {
     const auto end = next + static_cast<std::ptrdiff_t>(chain.size());
@@ -80,7 +86,9 @@ std::uint32_t Simulation::add_membrane(const MembranePlacement& placement) {
   require_bonds_allowed();
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
-  const std::uint32_t id = s.bonds.bind_membrane(placement, take(placement.mesh->vertices));
+  const std::vector<Vector3d>& sites = placement.mesh->vertices;
+  const std::vector<std::uint8_t> species(sites.size(), static_cast<std::uint8_t>(placement.species));
+  const std::uint32_t id = s.bonds.bind_membrane(placement, take(sites, species));
   refresh();
   return id;
 }

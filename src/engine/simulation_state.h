@@ -17,6 +17,7 @@
 #include "engine/memory.h"
 #include "engine/observe/carriage.h"
 #include "engine/observe/droplet_tracker.h"
+#include "engine/observe/solvents.h"
 #include "engine/observe/state_hash.h"
 #include "engine/observe/temperature.h"
 #include "engine/observe/virial.h"
@@ -174,7 +175,7 @@ struct Simulation::State {
   }
 
   void look() {
-    tracker.update(step, beads, pairs.blocks());
+    tracker.update(step, beads, pairs.blocks(), solvents(beads, pairs.blocks(), bonds));
     carriage.update(step, microparticles, beads, pairs, parameters, tracker);
     microparticles.note_look();
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tools/surfactant.h"
+
 namespace dmf::tools {
 namespace {
 
@@ -55,9 +57,14 @@ FloatingResult run_floating(const FloatingRun& run) {
   parameters.observe_interval = 20;
   // Where it floats does not depend on its mass; a light one is there sooner. It never touches the wall.
   parameters.microparticles.wall_attraction = 0;
+  if (run.surfactant > 0) add_surfactant(parameters);
   engine::Simulation simulation(parameters, engine::ContactAngleCurve::lan2016(), {1, "auto"});
   simulation.set_wettability([](double, double) { return 40.0; });
   simulation.fill_slab({-half_width, -half_width, 0}, {half_width, half_width, thickness});
+  if (run.surfactant > 0)
+    simulation.add_chains(surfactant_dimers(
+        static_cast<std::uint32_t>(std::lround(run.surfactant * 4 * half_width * half_width)),
+        {-half_width, -half_width, thickness - 1.5}, {half_width, half_width, thickness}));
   engine::MicroparticlePlacement placement;
   placement.radius = run.radius;
   placement.z = thickness + run.radius + 0.55;

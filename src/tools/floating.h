@@ -9,6 +9,7 @@ namespace dmf::tools {
 struct FloatingRun {
   double attraction = -15;  ///< A_ls of the microparticle
   double radius = 1;        ///< of the microparticle, r_c
+  double surfactant = 0;    ///< dimers in the film's surface (surfactant.h), 1 / r_c^2
   double settle = 60;       ///< tau before measuring
   double measure = 100;     ///< tau of measuring, a look every 0.2 tau
   std::uint64_t seed = 1;

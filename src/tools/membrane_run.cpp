@@ -31,6 +31,11 @@ engine::Parameters parameters_of(const MembraneRun& how) {
   parameters.time_step = how.time_step;
   parameters.integrator = how.integrator;
   parameters.seed = how.seed;
+  if (how.own_repulsion) {
+    const double amplitude = parameters.liquid.random_amplitude;
+    parameters.mixture.liquids = {{"membrane", {*how.own_repulsion, 0, amplitude}, 3, 3}};
+    parameters.mixture.pairs = {{"liquid", "membrane", {how.liquid_on_membrane, 0, amplitude}}};
+  }
   return parameters;
 }
 
@@ -45,21 +50,6 @@ bool encloses(const MembraneObservation& membrane, const Vector3d& point) {
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return std::abs(sum) > 2 * pi;
-}
-
-/// Ids of the liquid beads inside.
-std::set<std::uint32_t> inside(const engine::Snapshot& snapshot, const engine::Domain& domain) {
-  const MembraneObservation& membrane = snapshot.membranes.at(0);
-  const std::set<std::uint32_t> bound(membrane.beads.begin(), membrane.beads.end());
-  std::set<std::uint32_t> result;
-  for (std::size_t k = 0; k < snapshot.positions.size(); ++k) {
-    if (bound.count(snapshot.bead_ids[k])) continue;
-    const Vector3d at =
-        membrane.centroid + domain.nearest_image(snapshot.positions[k].cast<double>() - membrane.centroid);
-    if ((at.array() < membrane.lower.array()).any() || (at.array() > membrane.upper.array()).any()) continue;
-    if (encloses(membrane, at)) result.insert(snapshot.bead_ids[k]);
-  }
-  return result;
 }
 
 /// Along the shortest axis: thickness near the axis over the largest one of rings around it.
@@ -90,6 +80,20 @@ double centre_thickness(const MembraneObservation& membrane) {
 
 }  // namespace
 
+std::set<std::uint32_t> enclosed_liquid(const engine::Snapshot& snapshot, const engine::Domain& domain) {
+  const MembraneObservation& membrane = snapshot.membranes.at(0);
+  const std::set<std::uint32_t> bound(membrane.beads.begin(), membrane.beads.end());
+  std::set<std::uint32_t> result;
+  for (std::size_t k = 0; k < snapshot.positions.size(); ++k) {
+    if (bound.count(snapshot.bead_ids[k])) continue;
+    const Vector3d at =
+        membrane.centroid + domain.nearest_image(snapshot.positions[k].cast<double>() - membrane.centroid);
+    if ((at.array() < membrane.lower.array()).any() || (at.array() > membrane.upper.array()).any()) continue;
+    if (encloses(membrane, at)) result.insert(snapshot.bead_ids[k]);
+  }
+  return result;
+}
+
 MembraneResult run_membrane(const MembraneRun& how) {
   const engine::Parameters parameters = parameters_of(how);
   engine::Simulation simulation(parameters, engine::ContactAngleCurve::lan2016(), {1, "auto"});
@@ -104,13 +108,14 @@ MembraneResult run_membrane(const MembraneRun& how) {
   for (const auto& edge : network.edges())
     result.mean_edge +=
         (mesh.vertices[edge.b] - mesh.vertices[edge.a]).norm() / static_cast<double>(network.edges().size());
-  simulation.add_membrane({std::make_shared<const engine::TriangleMesh>(std::move(mesh)), how.stiffness});
+  simulation.add_membrane({std::make_shared<const engine::TriangleMesh>(std::move(mesh)), how.stiffness,
+                           how.own_repulsion ? 1u : 0u});
 
   const auto steps_of = [&](double time) {
     return static_cast<std::uint64_t>(std::llround(time / how.time_step));
   };
   for (std::uint64_t k = 0; k < steps_of(how.settle); ++k) simulation.step();
-  const std::set<std::uint32_t> before = inside(*simulation.observe({true}), parameters.domain);
+  const std::set<std::uint32_t> before = enclosed_liquid(*simulation.observe({true}), parameters.domain);
   double looks = 0;
   for (std::uint64_t k = 1; k <= steps_of(how.measure); ++k) {
     simulation.step();
@@ -131,7 +136,7 @@ MembraneResult run_membrane(const MembraneRun& how) {
   result.gyration /= looks;
   const auto last = simulation.observe({true});
   result.centre_thickness = centre_thickness(last->membranes.at(0));
-  const std::set<std::uint32_t> after = inside(*last, parameters.domain);
+  const std::set<std::uint32_t> after = enclosed_liquid(*last, parameters.domain);
   result.inside_before = static_cast<double>(before.size());
   result.inside_after = static_cast<double>(after.size());
   double crossed = 0;

@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <set>
 
 #include "engine/membrane.h"
+#include "engine/observe/snapshot.h"
 
 namespace dmf::tools {
 
@@ -15,7 +18,11 @@ struct MembraneRun {
   int subdivisions = 3;
   engine::MembraneStiffness stiffness;
   double repulsion = 25;  ///< a; 0: liquid that feels friction and noise only, and goes through the membrane
-  double margin = 2;      ///< from the membrane to the sides of the box
+  /// With it the membrane is of a species of its own, whose beads repel each other so; else it is of the
+  /// liquid.
+  std::optional<double> own_repulsion;
+  double liquid_on_membrane = 25;  ///< a of liquid and such a membrane
+  double margin = 2;               ///< from the membrane to the sides of the box
   double settle = 10, measure = 50;
 };
 
@@ -34,5 +41,8 @@ struct MembraneResult {
   double temperature = 0;
 };
 MembraneResult run_membrane(const MembraneRun& how);
+
+/// Ids of the beads inside the first membrane that are no part of it.
+std::set<std::uint32_t> enclosed_liquid(const engine::Snapshot& snapshot, const engine::Domain& domain);
 
 }  // namespace dmf::tools

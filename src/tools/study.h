@@ -90,6 +90,10 @@ Findings study_infiltration(const StudyOptions& options);
 Findings study_chain(const StudyOptions& options);
 /// Membranes: what they keep and what leaks, red cell, deflated sphere (Liu 4.4).
 Findings study_membrane(const StudyOptions& options);
+/// A red cell that a flow drives through a throat (Liu 4.4).
+Findings study_constriction(const StudyOptions& options);
+/// Dimers in the surface of a film: tension over coverage, a floating microparticle (Lan 5.2.4).
+Findings study_surfactant(const StudyOptions& options);
 /// A droplet on a wettability gradient: time against Lan's.
 Findings study_crossing(const StudyOptions& options);
 /// How long droplets of R = 5 take from x = -40 to 40, tau, by what is recorded of that study in

@@ -83,6 +83,8 @@ class YamlReader {
   std::string text(const std::string& key, std::optional<std::string> fallback = {}) const;
   /// A list of texts, which has to be there.
   std::vector<std::string> texts(const std::string& key, const Count& count) const;
+  /// A text by itself or a list of texts; empty when it is absent.
+  std::vector<std::string> text_or_texts(const std::string& key, const Count& count) const;
   /// One of the given words. On a violation the default, or else the first word.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      std::optional<std::string> fallback = {}) const;

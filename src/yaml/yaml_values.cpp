@@ -103,6 +103,13 @@ std::vector<std::string> YamlReader::texts(const std::string& key, const Count& 
       });
 }
 
+std::vector<std::string> YamlReader::text_or_texts(const std::string& key, const Count& count) const {
+  const auto* entry = Internals::find(*this, key, false, "text");
+  if (!entry) return {};
+  if (entry->value.IsScalar()) return {entry->value.Scalar()};
+  return texts(key, count);
+}
+
 std::string YamlReader::choice(const std::string& key, const std::vector<std::string>& words,
                                std::optional<std::string> fallback) const {
   const std::string otherwise = fallback.value_or(words.front());

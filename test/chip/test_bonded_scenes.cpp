@@ -97,6 +97,53 @@ TEST(BondedScenes, CountInTheContentOfAScene) {
       "membranes");
 }
 
+const std::string kTwoLiquids =
+    "species: {head: {attraction: -40}, tail: {attraction: -40}}\n"
+    "pairs:\n"
+    "  liquid: {head: {attraction: -45}, tail: {attraction: -25}}\n"
+    "  head: {tail: {attraction: -25}, wall: {attraction: -17}}\n"
+    "  tail: {wall: {attraction: -17}}\n";
+
+TEST(BondedScenes, SayOfWhichSpeciesTheirBeadsAre) {
+  const std::string spring = "spring: {kind: harmonic, stiffness: 50, length: 0.5}, ";
+  const auto of = [&](const std::string& species, const std::string& beads = "beads: 2") {
+    return kTwoLiquids + "chains: [{" + spring + species + beads +
+           ", count: 6, "
+           "box: {lower: [6, 6, 2], upper: [10, 10, 6]}}]\n";
+  };
+  EXPECT_EQ(scene_of(of("species: [head, tail], ")).chains.at(0).species, (std::vector<std::uint32_t>{1, 2}));
+  EXPECT_EQ(scene_of(of("species: tail, ", "beads: 5")).chains.at(0).species,
+            (std::vector<std::uint32_t>{2}));
+  EXPECT_TRUE(scene_of(of("")).chains.at(0).species.empty());
+  const Scene membrane =
+      scene_of(kTwoLiquids + "membranes: [{center: [8, 8, 4], radius: 2, species: tail}]\n");
+  EXPECT_EQ(membrane.membranes.at(0).species, 2u);
+
+  EXPECT_TRUE(holds(told(of("species: [head, tale], ")),
+                    "chains[0].species: species tale, allowed: liquid, head, tail"));
+  EXPECT_TRUE(holds(told(of("species: [head, tail], ", "beads: 5")),
+                    "chains[0]: species: 2 of them, allowed: 1, or 5, one a bead"));
+  EXPECT_TRUE(holds(told(of("species: {head: 1}, ")), "chains[0].species"));
+  EXPECT_TRUE(holds(told(kTwoLiquids + "membranes: [{center: [8, 8, 4], radius: 2, species: [tail]}]\n"),
+                    "membranes[0].species"));
+
+  // It counts in the content of a scene, and only where it is said.
+  EXPECT_EQ(differing_parts(content_of(scene_of(of("species: [head, tail], "))),
+                            content_of(scene_of(of("species: [tail, head], ")))),
+            "chains");
+  EXPECT_EQ(
+      differing_parts(content_of(membrane),
+                      content_of(scene_of(kTwoLiquids + "membranes: [{center: [8, 8, 4], radius: 2}]\n"))),
+      "membranes");
+
+  // And a run of such a scene goes on after it was saved.
+  Experiment experiment(scene_of(of("species: [head, tail], ")), {1, "auto"});
+  for (int k = 0; k < 10; ++k) experiment.step();
+  const std::string saved = experiment.save();
+  experiment.load(saved);
+  EXPECT_TRUE(experiment.save() == saved);
+}
+
 TEST(BondedScenes, KeepTheTextsOfTheirMeshes) {
   const fs::path folder = fs::temp_directory_path() / ("dmf_bonded_scenes_" + std::to_string(::getpid()));
   fs::create_directories(folder);

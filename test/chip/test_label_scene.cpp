@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -76,6 +77,60 @@ TEST(LabelScene, ShapesLabelTheVoxelsWhoseMiddleTheyHold) {
         EXPECT_EQ(label_at(pillars, x, y, z), (box || ball) && !hole) << x << " " << y << " " << z;
       }
   EXPECT_EQ(pillars.parameters.label_grid.contact_angle, pillars.electrowetting.rest_angle);
+}
+
+TEST(LabelScene, APrismHoldsWhatItsOutlineHoldsAlongItsAxis) {
+  // A wedge along y that rises from nothing at x = 2 to 4 at x = 6, and falls off steeply to x = 7.
+  const Scene wedge = scene(
+      "label_grid:\n"
+      "  voxel_size: [0.5, 1, 0.5]\n"
+      "  shapes: [{prism: {axis: y, outline: [[2, 0], [7, 0], [6, 4]]}}]\n");
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 6; ++y)
+      for (int x = 0; x < 16; ++x) {
+        const double at_x = 0.5 * (x + 0.5), at_z = 0.5 * (z + 0.5);
+        const double top = at_x < 6 ? at_x - 2 : 4 * (7 - at_x);
+        if (std::abs(at_z - top) < 1e-9) continue;  // on the slope itself
+        EXPECT_EQ(label_at(wedge, x, y, z), at_z < top) << x << " " << y << " " << z;
+      }
+  // Over the periodic side in x; its outline is in x and y.
+  const Scene over = scene(
+      "label_grid:\n"
+      "  voxel_size: [1, 1, 1]\n"
+      "  shapes: [{prism: {axis: z, outline: [[7, 1], [9, 1], [9, 3], [7, 3]]}}]\n");
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(label_at(over, x, y, 2), (x == 7 || x == 0) && (y == 1 || y == 2)) << x << " " << y;
+  EXPECT_TRUE(holds(
+      refused("label_grid: {shapes: [{prism: {axis: y, outline: [[0, 0], [4, 3], [4, 0], [0, 3]]}}]}\n"),
+      "label_grid.shapes[0].prism.outline"));
+}
+
+TEST(LabelScene, WhatIsBoundLiesOutsideOfTheSolid) {
+  const std::string floor =
+      "label_grid: {voxel_size: [0.5, 0.5, 0.5], shapes: [{box: {lower: [0, 0, 0], upper: [8, 6, 1.5]}}]}\n";
+  const std::string spring = "spring: {kind: harmonic, stiffness: 50, length: 0.5}";
+  EXPECT_TRUE(holds(refused(floor + "chains: [{" + spring + ", points: [[4, 3, 1.8], [4, 3, 1.3]]}]\n"),
+                    "chains[0]: points[1]: (4, 3, 1.3), in the solid of the label grid"));
+  EXPECT_TRUE(holds(refused(floor + "membranes: [{center: [4, 3, 2], radius: 1, subdivisions: 1}]\n"),
+                    "in the solid of the label grid, allowed: outside of it"));
+  // Random walks go around it.
+  Experiment experiment(scene(floor + "chains: [{" + spring + ", count: 40, beads: 8}]\n"), {1, "auto"});
+  const auto snapshot = experiment.observe({true});
+  ASSERT_EQ(snapshot->positions.size(), 320u);
+  for (const auto& at : snapshot->positions) EXPECT_GE(at.z(), 1.5f);
+}
+
+TEST(LabelScene, EverySpeciesNeedsALawWithTheSolid) {
+  const std::string two =
+      "species: {oil: {attraction: -40}}\npairs: {liquid: {oil: {attraction: -30}}WALL}\n"
+      "label_grid: {shapes: [{box: {lower: [0, 0, 0], upper: [8, 6, 1.5]}}]}\n";
+  const auto with = [&](const std::string& wall) {
+    std::string text = two;
+    return text.replace(text.find("WALL"), 4, wall);
+  };
+  EXPECT_TRUE(holds(refused(with("")), "pairs: no law for oil and wall"));
+  EXPECT_NO_THROW(scene(with(", oil: {wall: {attraction: -17}}")));
 }
 
 TEST(LabelScene, WithoutASizeVoxelsAreHalfALatticeConstantStretchedToFit) {

@@ -119,7 +119,8 @@ TEST(Chains, BondsOfEverySpringHaveTheirThermalLength) {
       for (int k = 0; k < 4000; ++k) {
         simulation.step();
         if (k < 1000 || k % 20 != 0) continue;
-        for (const ChainObservation& chain : simulation.observe()->chains) {
+        const auto snapshot = simulation.observe();
+        for (const ChainObservation& chain : snapshot->chains) {
           square += chain.end_to_end.squaredNorm();
           ++samples;
         }
@@ -146,7 +147,8 @@ TEST(Chains, ThatArePulledReachAsFarAsTheirPartitionFunctionSays) {
   for (int k = 0; k < 8000; ++k) {
     simulation.step();
     if (k < 3000 || k % 50 != 0) continue;
-    for (const ChainObservation& chain : simulation.observe()->chains) {
+    const auto snapshot = simulation.observe();
+    for (const ChainObservation& chain : snapshot->chains) {
       along += chain.end_to_end.dot(Vector3d(0.8, 0, 0.6)) / 5;
       ++samples;
     }
@@ -168,7 +170,8 @@ TEST(Chains, ThatAreIdealSpreadAsRandomWalks) {
   for (int k = 0; k < 9000; ++k) {
     simulation.step();
     if (k < 1000 || k % 100 != 0) continue;
-    for (const ChainObservation& chain : simulation.observe()->chains) {
+    const auto snapshot = simulation.observe();
+    for (const ChainObservation& chain : snapshot->chains) {
       square += chain.end_to_end.squaredNorm();
       gyration += chain.radius_of_gyration * chain.radius_of_gyration;
       ++samples;

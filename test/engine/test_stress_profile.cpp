@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "engine/bonds/mesh.h"
 #include "engine/simulation.h"
 #include "refusal.h"
 #include "systems.h"
@@ -16,7 +18,8 @@ std::vector<SlabStress> profile_of(System& system, const StressSlabs& slabs) {
   pairs.rebuild(system.beads, wall);
   Microparticles none(system.parameters);
   Forces(system.parameters, "auto").density(system.beads, wall, none, pairs);
-  return stress_profile(slabs, system.beads, pairs.blocks(), pairs.ghosts(), system.parameters);
+  return stress_profile(slabs, system.beads, pairs.blocks(), pairs.ghosts(), Bonds(system.parameters),
+                        system.parameters);
 }
 
 /// Two resting beads 0.9 r_c apart: too far for the repulsion, so that the force is A (1 - 0.9) = -4.
@@ -152,6 +155,72 @@ TEST(StressProfile, RefusesAnAxisOrACountThatThereIsNot) {
   System system = pair_along({1, 1, 1}, Vector3d::UnitX());
   EXPECT_EQ(refusal([&] { profile_of(system, {3, 1}); }), "stress.axis: 3, allowed: 0 to 2");
   EXPECT_EQ(refusal([&] { profile_of(system, {0, 0}); }), "stress.count: 0, allowed: 1 to 100000");
+}
+
+TEST(BondStress, MakesAMoleculeOneParticleOfAnIdealGas) {
+  // Beads that feel nothing but bonds: p V = (molecules) k_BT, so that of the beads' own N k_BT each bond
+  // takes one k_BT, and a membrane of N beads N - 1.
+  Parameters parameters = periodic_box(5.5);
+  parameters.liquid.attraction = parameters.liquid.repulsion = 0;
+  parameters.liquid.random_amplitude = 3;
+  parameters.liquid.initial_density = 1.5;
+  parameters.watchdog.evaporation = 1;
+  const auto bonds_share = [&](Simulation& simulation, int steps) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    double slabs = 0, looks = 0;
+    for (int k = 0; k < steps; ++k) {
+      simulation.step();
+      if (k < steps / 5 || k % 5 != 0) continue;
+      ObserveRequest request{true, false, true};
+      const auto snapshot = simulation.observe(request);
+      sum += *snapshot->virial;
+      for (const float one : snapshot->bead_virials) slabs += one;
+      ++looks;
+    }
+    EXPECT_NEAR(slabs / looks, sum.trace() / 3 / looks, 1e-3 * std::abs(slabs / looks));
+    EXPECT_NEAR(sum(0, 0) / sum(2, 2), 1, 0.1);
+    return sum.trace() / 3 / looks;
+  };
+  {
+    Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+    ChainPlacement placement;
+    placement.spring.stiffness = 60;
+    placement.spring.length = 0.6;
+    placement.count = 50;
+    placement.beads = 6;
+    placement.bond_length = 0.6;
+    placement.upper = parameters.domain.upper;
+    simulation.add_chains(placement);
+    EXPECT_NEAR(bonds_share(simulation, 3000) / -(50 * 5), 1, 0.03);
+  }
+  {
+    // Over a periodic corner, in a thermostat of unbound beads.
+    Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+    simulation.fill_box();
+    TriangleMesh mesh = icosphere(1);
+    for (Vector3d& vertex : mesh.vertices) vertex = 1.3 * vertex + Vector3d(0.2, 0.1, 5.3);
+    simulation.add_membrane({std::make_shared<const TriangleMesh>(mesh), {}});
+    EXPECT_NEAR(bonds_share(simulation, 5000) / -41, 1, 0.08);
+  }
+}
+
+TEST(BondStress, StandsInTheSlabsThatTheBondCrosses) {
+  Parameters parameters = periodic_box(4);
+  parameters.liquid.attraction = parameters.liquid.repulsion = parameters.liquid.random_amplitude = 0;
+  Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  ChainPlacement placement;
+  placement.spring.stiffness = 50;
+  placement.spring.length = 0.5;
+  placement.points = {{1, 1, 0.9}, {1, 1, 1.8}};
+  simulation.add_chains(placement);
+  ObserveRequest request;
+  request.stress = StressSlabs{2, 8};
+  const auto bound = simulation.observe(request);
+  // Of T (r) = 50 (0.9 - 0.5) = 20 over 0.9 in slabs of 0.5, beside two beads' motion along z.
+  const double stress = -20 * 0.9 / (4 * 4 * 0.5);
+  EXPECT_NEAR(bound->stress[2].pressure(2, 2), stress * 5 / 9, 1e-5);
+  EXPECT_NEAR(bound->stress[2].pressure(0, 0), 0, 1e-9);
+  EXPECT_NEAR(bound->stress[4].pressure(2, 2), 0, 1e-9);
 }
 
 }  // namespace

@@ -10,12 +10,14 @@
 #include "engine/cell_grid.h"
 #include "engine/noise.h"
 #include "engine/placement.h"
+#include "engine/walls/solid.h"
 
 namespace dmf::engine {
 namespace {
 
 constexpr int most_tries = 200;    ///< for the next bead of a walk, and for a whole chain
 constexpr double rounding = 1e-9;  ///< of a number that was told and is given back
+constexpr const char* in_solid = "in the solid of the label grid, allowed: outside of it (r_c)";
 
 /// Uniform numbers of one chain.
 class Draws {
@@ -41,14 +43,14 @@ class Draws {
   std::uint32_t count_ = 0;
 };
 
-/// The box that beads must lie in; without sides where it is a whole period.
-bool inside(const Vector3d& p, const ChainPlacement& placement, const Domain& domain) {
+/// The box that beads must lie in, outside of the solid; without sides where it is a whole period.
+bool inside(const Vector3d& p, const ChainPlacement& placement, const Domain& domain, const Solid& solid) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool endless = domain.periodic(axis) && placement.lower[axis] <= domain.lower[axis] &&
                          placement.upper[axis] >= domain.upper[axis];
     if (!endless && (p[axis] < placement.lower[axis] || p[axis] > placement.upper[axis])) return false;
   }
-  return true;
+  return !solid.contains(p.cast<float>());
 }
 
 Vector3d somewhere(Draws& draws, const Vector3d& lower, const Vector3d& upper) {
@@ -57,29 +59,30 @@ Vector3d somewhere(Draws& draws, const Vector3d& lower, const Vector3d& upper) {
   return p;
 }
 
-std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement,
-                                          const Domain& domain) {
+std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement, const Domain& domain,
+                                          const Solid& solid) {
   std::vector<Vector3d> sites{somewhere(draws, placement.lower, placement.upper)};
+  if (!inside(sites.front(), placement, domain, solid)) return std::nullopt;
   while (sites.size() < placement.beads) {
     int tries = 0;
     Vector3d next;
     do {
       if (++tries > most_tries) return std::nullopt;
       next = sites.back() + placement.bond_length * draws.direction();
-    } while (!inside(next, placement, domain));
+    } while (!inside(next, placement, domain, solid));
     sites.push_back(next);
   }
   return sites;
 }
 
-std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement,
-                                          const Domain& domain) {
+std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement, const Domain& domain,
+                                          const Solid& solid) {
   const Vector3d bond = placement.bond_length * placement.direction.normalized();
   const Vector3d first = somewhere(draws, placement.lower, placement.upper);
   std::vector<Vector3d> sites;
   for (std::uint32_t k = 0; k < placement.beads; ++k) {
     sites.push_back(first + static_cast<double>(k) * bond);
-    if (!inside(sites.back(), placement, domain)) return std::nullopt;
+    if (!inside(sites.back(), placement, domain, solid)) return std::nullopt;
   }
   return sites;
 }
@@ -116,6 +119,23 @@ bool in_domain(const Vector3d& p, const Domain& domain) {
   return true;
 }
 
+/// @param ids  of beads that are there. @param species  of each of them.
+void give_species(Beads& beads, const std::vector<std::uint32_t>& ids,
+                  const std::vector<std::uint8_t>& species) {
+  const bool all_first = std::all_of(species.begin(), species.end(), [](std::uint8_t k) { return k == 0; });
+  if (beads.species.empty() && all_first) return;
+  if (beads.species.empty()) beads.species.assign(beads.size(), 0);
+  std::vector<std::size_t> index_of_id(*std::max_element(beads.id.begin(), beads.id.end()) + 1);
+  for (std::size_t i = 0; i < beads.size(); ++i) index_of_id[beads.id[i]] = i;
+  for (std::size_t k = 0; k < ids.size(); ++k) beads.species[index_of_id[ids[k]]] = species[k];
+}
+
+/// Empty when there is a liquid of that number.
+std::string unknown_species(std::uint32_t species, const Parameters& parameters) {
+  const std::size_t last = parameters.mixture.liquids.size();
+  return species <= last ? "" : fmt::format("species: {}, allowed: 0 to {}", species, last);
+}
+
 std::string outside_of(const Domain& domain) {
   return fmt::format("allowed: within {} to {} where sides are not periodic (r_c)", text_of(domain.lower),
                      text_of(domain.upper));
@@ -131,12 +151,22 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
   std::vector<std::string> found = violations(placement.spring);
   if (!found.empty()) return found;
   const Domain& domain = parameters.domain;
+  const Solid solid(parameters);
   const SpringLaw law = SpringLaw::of(placement.spring, parameters.liquid.temperature);
   const double longest = std::min(law.max_length(), longest_bond(domain));
   const auto of_longest = [&] {
     return fmt::format("allowed: less than {:.4g}, {}", longest,
                        law.max_length() <= longest ? "the spring's maximum" : "a third of a periodic side");
   };
+  const std::size_t beads = placement.points.empty() ? placement.beads : placement.points.size();
+  const std::size_t of_species = placement.species.size();
+  if (of_species > 1 && of_species != beads)
+    found.push_back(fmt::format("species: {} of them, allowed: 1, or {}, one a bead", of_species, beads));
+  for (const std::uint32_t species : placement.species)
+    if (const std::string unknown = unknown_species(species, parameters); !unknown.empty()) {
+      found.push_back(unknown);
+      break;
+    }
   if (!placement.stretching_force.allFinite())
     found.push_back(
         fmt::format("stretching_force: {}, allowed: finite", text_of(placement.stretching_force)));
@@ -167,6 +197,8 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
       if (!in_domain(placement.points[k], domain))
         found.push_back(
             fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), outside_of(domain)));
+      else if (solid.contains(placement.points[k].cast<float>()))
+        found.push_back(fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), in_solid));
       else if (const double r = k > 0 ? (placement.points[k] - placement.points[k - 1]).norm() : 0;
                !(r < longest))
         found.push_back(
@@ -177,7 +209,7 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
   }
   // A bond between two beads of mass 1 oscillates with sqrt(2 k), the beads of a long chain with up to twice
   // sqrt(k).
-  const bool is_pair = placement.points.empty() ? placement.beads == 2 : placement.points.size() == 2;
+  const bool is_pair = beads == 2;
   const double steepest = law.slope(law.reach(spring_reach_energy * parameters.liquid.temperature));
   const std::string coarse =
       too_coarse("a chain of this spring", std::sqrt((is_pair ? 2 : 4) * steepest), parameters);
@@ -194,6 +226,8 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
       found.push_back(fmt::format("{}: {}, allowed: {}", key, value, allowed));
   };
   if (s.spring == SpringKind::fene) found.push_back("spring: fene, allowed: wlc, harmonic");
+  if (const std::string unknown = unknown_species(placement.species, parameters); !unknown.empty())
+    found.push_back(unknown);
   within("shear_modulus", s.shear_modulus, 1e-9, 1e5, "above 0 up to 1e5 (k_BT / r_c^2)");
   within("max_stretch", s.max_stretch, 1.2, 10, "1.2 to 10");
   within("bending_rigidity", s.bending_rigidity, 0, 1e5, "0 to 1e5 (k_BT)");
@@ -211,6 +245,10 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
     if (!in_domain(mesh.vertices[k], parameters.domain))
       found.push_back(fmt::format("mesh: vertex {} at {}, {}", k, text_of(mesh.vertices[k]),
                                   outside_of(parameters.domain)));
+  const Solid solid(parameters);
+  for (std::size_t k = 0; k < mesh.vertices.size() && found.empty(); ++k)
+    if (solid.contains(mesh.vertices[k].cast<float>()))
+      found.push_back(fmt::format("mesh: vertex {} at {}, {}", k, text_of(mesh.vertices[k]), in_solid));
   const MembraneNetwork network(mesh, s);
   const double longest = longest_bond(parameters.domain);
   for (const MembraneNetwork::SpringEdge& edge : network.edges()) {
@@ -229,14 +267,15 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
 
 std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, const Parameters& parameters,
                                                std::uint64_t step, std::uint32_t first_id) {
+  const Solid solid(parameters);
   std::vector<std::vector<Vector3d>> chains;
   if (!placement.points.empty()) chains.push_back(placement.points);
   for (std::uint32_t k = 0; chains.size() < placement.count; ++k) {
     Draws draws(parameters.seed, step, first_id + k);
     std::optional<std::vector<Vector3d>> sites;
     for (int tries = 0; !sites && tries < most_tries; ++tries)
-      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters.domain)
-                                                      : walk(draws, placement, parameters.domain);
+      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters.domain, solid)
+                                                      : walk(draws, placement, parameters.domain, solid);
     if (!sites)
       throw InvalidInput(fmt::format(
           "chain {} of {}: {} beads with bonds of {:.4g} r_c find no room in the box from {} to {}, allowed: "
@@ -250,7 +289,8 @@ std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, 
   return chains;
 }
 
-std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites, const Bonds& bonds,
+std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites,
+                                      const std::vector<std::uint8_t>& species, const Bonds& bonds,
                                       const Parameters& parameters, std::uint64_t step,
                                       std::uint32_t& next_id) {
   const Domain& domain = parameters.domain;
@@ -306,6 +346,7 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
   }
   const std::vector<std::uint32_t> added = place_beads(beads, free_sites, 0, parameters, step, next_id);
   for (std::size_t k = 0; k < without.size(); ++k) ids[without[k]] = added[k];
+  give_species(beads, ids, species);
   return ids;
 }
 

@@ -17,11 +17,12 @@ std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, 
                                                std::uint64_t step, std::uint32_t first_id);
 
 /// Beads for these sites: the nearest bead within r_c that is not bound yet is put there and keeps its id and
-/// velocity; where there is none, a new one is. All are beads of the liquid: once there are more species of
-/// moving beads, a site's species is given to its bead here.
+/// velocity; where there is none, a new one is. Each becomes one of its site's species, whatever it was.
+/// @param species  numbers of liquids, site by site.
 /// @param next_id  above all bead ids that were ever given; advanced.
 /// @returns the ids, site by site. Pairs must be rebuilt.
-std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites, const Bonds& bonds,
+std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites,
+                                      const std::vector<std::uint8_t>& species, const Bonds& bonds,
                                       const Parameters& parameters, std::uint64_t step,
                                       std::uint32_t& next_id);
 

@@ -146,6 +146,33 @@ bool Bonds::add_forces(const Membrane& membrane, Beads& beads) const {
   return true;
 }
 
+void Bonds::for_each_stress(
+    const Beads& beads,
+    const std::function<void(std::uint32_t, const Vector3d&, const Eigen::Matrix3d&)>& visit) const {
+  for (const Chain& chain : chains_) {
+    const std::vector<Vector3d> positions = positions_of(chain, beads);
+    for (std::size_t k = 0; k + 1 < positions.size(); ++k) {
+      const Vector3d apart = positions[k] - positions[k + 1];
+      const double r = apart.norm();
+      if (r == 0) continue;
+      const Eigen::Matrix3d half = -0.5 * chain.law.tension(r) / r * apart * apart.transpose();
+      visit(chain.indices[k], apart, half);
+      visit(chain.indices[k + 1], -apart, half);
+    }
+  }
+  for (const Membrane& membrane : membranes_) {
+    const std::vector<Vector3d> positions = positions_of(membrane, beads);
+    std::vector<Vector3d> forces(positions.size(), Vector3d::Zero());
+    if (!membrane.network.add_forces(positions, forces)) continue;
+    Vector3d centroid = Vector3d::Zero();
+    for (const Vector3d& p : positions) centroid += p / static_cast<double>(positions.size());
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      const Eigen::Matrix3d stress = (positions[k] - centroid) * forces[k].transpose();
+      visit(membrane.indices[k], Vector3d::Zero(), 0.5 * (stress + stress.transpose()));
+    }
+  }
+}
+
 std::vector<Vector3d> Bonds::positions_of(const Chain& chain, const Beads& beads) const {
   std::vector<Vector3d> positions;
   positions.reserve(chain.indices.size());

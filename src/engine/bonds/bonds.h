@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +60,14 @@ class Bonds {
   /// Adds the forces of all bonds to `beads.force`. @returns what is wrong when a bond is as long as it can
   /// be, with bond, beads and length; else nothing.
   std::string add_forces(Beads& beads) const;
+
+  /// Calls visit(bead, r_i - r_j, its share of the stress r (x) F) for what the bonds do, by storage index:
+  /// half of a chain's bond for each of its beads. A membrane's forces are not those of pairs: each of its
+  /// beads has its place from the centroid times the force on it, and no r_j (0). What stretches chains is
+  /// left out.
+  void for_each_stress(
+      const Beads& beads,
+      const std::function<void(std::uint32_t, const Vector3d&, const Eigen::Matrix3d&)>& visit) const;
 
   std::vector<ChainObservation> observe_chains(const Beads& beads) const;
   std::vector<MembraneObservation> observe_membranes(const Beads& beads) const;

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/multi_point.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
 #include <cmath>
 #include <utility>
+
+#include "engine/observe/connected_beads.h"
 
 namespace dmf::engine {
 namespace {
@@ -21,68 +22,6 @@ constexpr double wetting_height = 1.0;
 constexpr std::uint32_t fewest_rim_neighbours = 8;
 /// The slab turns when the way of the droplet has turned by more than this cosine (45 degrees).
 constexpr double same_way_cosine = 0.70710678;
-
-/// Sets of connected beads, each with a root: its first bead. Across periodic sides a set may be wound: every
-/// bead knows in which image it stands, seen from the root (in periods, along each axis).
-class ConnectedBeads {
- public:
-  explicit ConnectedBeads(std::size_t count) : links_(count) {
-    for (std::uint32_t bead = 0; bead < count; ++bead) links_[bead].parent = bead;
-  }
-
-  using Image = std::array<std::int16_t, 3>;
-
-  bool joined(std::uint32_t first, std::uint32_t second) {
-    return links_[first].parent == links_[second].parent || root(first) == root(second);
-  }
-
-  /// Joins the sets of two beads that are not joined yet, the second of which stands in `image` seen from the
-  /// first.
-  void join(std::uint32_t first, std::uint32_t second, const Image& image) {
-    const std::uint32_t a = root(first), b = root(second);
-    // second's root seen from first's root.
-    const Image between = difference(sum(image_of(first), image), image_of(second));
-    if (a < b) {
-      links_[b] = {a, between};
-    } else {
-      links_[a] = {b, difference({}, between)};
-    }
-  }
-
-  /// Afterwards the bead hangs directly on its root.
-  std::uint32_t root(std::uint32_t bead) {
-    if (links_[bead].parent == bead) return bead;
-    std::uint32_t top = bead;
-    Image image{};
-    while (links_[top].parent != top) {
-      image = sum(image, links_[top].image);
-      top = links_[top].parent;
-    }
-    while (links_[bead].parent != top) {
-      const Link next = links_[bead];
-      links_[bead] = {top, image};
-      image = difference(image, next.image);
-      bead = next.parent;
-    }
-    return top;
-  }
-  /// Of a bead seen from its root; root(bead) must have been called since the last join.
-  const Image& image_of(std::uint32_t bead) const { return links_[bead].image; }
-
- private:
-  struct Link {
-    std::uint32_t parent;
-    Image image{};
-  };
-  static Image sum(const Image& a, const Image& b) {
-    return {std::int16_t(a[0] + b[0]), std::int16_t(a[1] + b[1]), std::int16_t(a[2] + b[2])};
-  }
-  static Image difference(const Image& a, const Image& b) {
-    return {std::int16_t(a[0] - b[0]), std::int16_t(a[1] - b[1]), std::int16_t(a[2] - b[2])};
-  }
-
-  std::vector<Link> links_;
-};
 
 std::vector<Eigen::Vector2f> convex_outline(const std::vector<Eigen::Vector2d>& points, double& area) {
   namespace bg = boost::geometry;
@@ -109,11 +48,11 @@ bool fills_box(const DropletObservation& droplet, const Domain& domain) {
 DropletTracker::DropletTracker(const Parameters& parameters)
     : parameters_(parameters), wall_plane_(parameters.domain.lower.z()) {}
 
-void DropletTracker::update(std::uint64_t step, const Beads& beads,
-                            const std::vector<NeighbourBlock>& blocks) {
+void DropletTracker::update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+                            const std::vector<std::uint8_t>& solvents) {
   const double elapsed = static_cast<double>(step - last_step_) * parameters_.time_step;
   last_step_ = step;
-  std::vector<Component> components = connected_components(beads, blocks);
+  std::vector<Component> components = connected_components(beads, blocks, solvents);
   const std::map<std::uint32_t, std::uint32_t> merged_into = give_identities(step, components);
 
   vapour_beads_ = beads.size();
@@ -150,7 +89,11 @@ void DropletTracker::forget(std::uint32_t droplet) {
 }
 
 std::vector<DropletTracker::Component> DropletTracker::connected_components(
-    const Beads& beads, const std::vector<NeighbourBlock>& blocks) const {
+    const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+    const std::vector<std::uint8_t>& solvents) const {
+  const auto liquid_of = [&](std::uint32_t i) {
+    return solvents.empty() ? beads.species_of(i) : solvents[i];
+  };
   const Eigen::Vector3f size = parameters_.domain.size().cast<float>();
   const bool periodic[3] = {parameters_.domain.periodic(0), parameters_.domain.periodic(1),
                             parameters_.domain.periodic(2)};
@@ -168,7 +111,7 @@ std::vector<DropletTracker::Component> DropletTracker::connected_components(
   ConnectedBeads connected(beads.size());
   for (const NeighbourBlock& block : blocks)
     for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
-      if (j < i && beads.species_of(i) == beads.species_of(j) && !connected.joined(i, j))
+      if (j < i && liquid_of(i) == liquid_of(j) && !connected.joined(i, j))
         connected.join(i, j, image(beads.position[i], beads.position[j]));
     });
 
@@ -187,6 +130,7 @@ std::vector<DropletTracker::Component> DropletTracker::connected_components(
     const std::uint32_t root = connected.root(bead);
     if (beads_of_root[root] < fewest_beads) continue;
     Component& component = components[component_of_root.at(root)];
+    component.species = liquid_of(bead);
     component.beads.push_back(bead);
     const Record& p = beads.position[bead];
     const ConnectedBeads::Image& seen = connected.image_of(bead);
@@ -261,7 +205,7 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   droplet.id = component.id;
   droplet.parents = memory.parents;
   droplet.beads = component.beads.size();
-  droplet.species = beads.species_of(component.beads.front());
+  droplet.species = component.species;
   droplet.volume = count / bulk_density(parameters_, droplet.species);
 
   Vector3d velocity = Vector3d::Zero();

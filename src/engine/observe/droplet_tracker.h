@@ -14,9 +14,9 @@
 namespace dmf::engine {
 
 /// Finds droplets and keeps their identity. A droplet is a set of at least `fewest_beads` beads of one liquid
-/// connected by distances below r_c; in a mixture a medium that fills the box is one, too. Looks at the beads
-/// at fixed steps, so that ids, events and running averages are functions of the run and not of who watches
-/// it.
+/// connected by distances below r_c, with what is dissolved in it (solvents.h); in a mixture a medium that
+/// fills the box is one, too. Looks at the beads at fixed steps, so that ids, events and running averages are
+/// functions of the run and not of who watches it.
 ///
 /// Identity: a droplet's heir is the component that holds most of its beads. A component goes on under the id
 /// of the largest droplet whose heir it is; others whose heir it is too have merged into it. A component that
@@ -28,7 +28,9 @@ class DropletTracker {
   explicit DropletTracker(const Parameters& parameters);
 
   /// Needs who is in range now: the density pass must have run on these positions.
-  void update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks);
+  /// @param solvents  the liquid that each bead counts to; empty: its own species.
+  void update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+              const std::vector<std::uint8_t>& solvents = {});
 
   const std::vector<DropletObservation>& droplets() const { return droplets_; }  ///< by id
   std::size_t vapour_beads() const { return vapour_beads_; }
@@ -56,6 +58,7 @@ class DropletTracker {
     std::vector<Eigen::Vector3f> positions;           ///< unwrapped: continuous across periodic sides
     std::map<std::uint32_t, std::size_t> beads_from;  ///< by previous droplet
     std::uint32_t id = 0;
+    std::uint32_t species = 0;  ///< number of the liquid
   };
   /// What is remembered of a droplet between two looks.
   struct Memory {
@@ -64,8 +67,8 @@ class DropletTracker {
     RunningAngles angles;
   };
 
-  std::vector<Component> connected_components(const Beads& beads,
-                                              const std::vector<NeighbourBlock>& blocks) const;
+  std::vector<Component> connected_components(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+                                              const std::vector<std::uint8_t>& solvents) const;
   /// @returns for each droplet that has merged into another one: which.
   std::map<std::uint32_t, std::uint32_t> give_identities(std::uint64_t step,
                                                          std::vector<Component>& components);

@@ -67,9 +67,10 @@ struct Snapshot {
   std::vector<ChainObservation> chains;                  ///< by id
   std::vector<MembraneObservation> membranes;            ///< by id
   std::optional<std::uint64_t> state_hash;               ///< when asked for
-  std::optional<Eigen::Matrix3d> virial;  ///< sum over liquid pairs of r_ij (x) F_ij, k_BT, when asked for
-  std::optional<WettedArea> wetted;       ///< of the plate, when asked for and there is one
-  std::vector<SlabStress> stress;         ///< lowest slab first; empty unless asked for
+  std::optional<Eigen::Matrix3d>
+      virial;  ///< sum over liquid pairs and bonds of r_ij (x) F_ij, k_BT, when asked for
+  std::optional<WettedArea> wetted;  ///< of the plate, when asked for and there is one
+  std::vector<SlabStress> stress;    ///< lowest slab first; empty unless asked for
   // When beads are asked for, equally long, ordered by bead id:
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> velocities;

@@ -53,7 +53,7 @@ class Slabs {
 
 std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& beads,
                                        const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
-                                       const Parameters& parameters) {
+                                       const Bonds& bonds, const Parameters& parameters) {
   if (slabs.axis < 0 || slabs.axis > 2)
     throw InvalidInput(fmt::format("stress.axis: {}, allowed: 0 to 2", slabs.axis));
   if (slabs.count < 1 || slabs.count > 100000)
@@ -82,13 +82,16 @@ std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& be
           result[k].pressure.trace() / (parameters.dimensions * static_cast<double>(count[k] - 1));
       result[k].pressure *= static_cast<double>(count[k]) / static_cast<double>(count[k] - 1);
     }
+  const auto add = [&](std::uint32_t i, const Vector3d& apart, const Eigen::Matrix3d& stress) {
+    const double from = layers.place(beads.position[i]);
+    layers.divide(from, from - layers.length(apart),
+                  [&](std::size_t slab, double part) { result[slab].pressure += part * stress; });
+  };
+  bonds.for_each_stress(beads, add);
   for (const NeighbourBlock& block : blocks) {
     const auto share = [&](std::uint32_t i, const Vector3d& apart, double force_over_distance) {
       // A pair stands in the rows of both its beads: half of it each time.
-      const Eigen::Matrix3d stress = 0.5 * force_over_distance * apart * apart.transpose();
-      const double from = layers.place(beads.position[i]);
-      layers.divide(from, from - layers.length(apart),
-                    [&](std::size_t slab, double part) { result[slab].pressure += part * stress; });
+      add(i, apart, 0.5 * force_over_distance * apart * apart.transpose());
     };
     for_each_pair_stress<PairForce::conservative>(block, beads, ghosts, parameters, share);
     for_each_pair_stress<PairForce::friction>(block, beads, ghosts, parameters, share);

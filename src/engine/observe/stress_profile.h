@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/beads.h"
+#include "engine/bonds/bonds.h"
 #include "engine/neighbours.h"
 #include "engine/parameters.h"
 #include "engine/walls/ghosts.h"
@@ -20,7 +21,8 @@ struct SlabStress {
   /// P, k_BT / r_c^3, by Irving and Kirkwood (1950; Liu eq. 11, where S = -P):
   ///   P V = sum over beads of (v - u) (x) (v - u)  +  sum over pairs of r_ij (x) F_ij
   /// with u the slab's mean velocity; the first sum is scaled by n / (n - 1), because u is the mean of the
-  /// same n beads. A pair counts in each slab with the part of the line between its beads that lies there. F
+  /// same n beads. A pair counts in each slab with the part of the line between its beads that lies there, a
+  /// chain's bond likewise, and what a membrane's bonds do to a bead in the bead's slab. F
   /// is the conservative force and the friction; noise, which has no mean, is left out, and so are walls and
   /// microparticles.
   Eigen::Matrix3d pressure = Eigen::Matrix3d::Zero();
@@ -33,6 +35,6 @@ struct SlabStress {
 /// @throws InvalidInput for an axis or a count that there is not.
 std::vector<SlabStress> stress_profile(const StressSlabs& slabs, const Beads& beads,
                                        const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
-                                       const Parameters& parameters);
+                                       const Bonds& bonds, const Parameters& parameters);
 
 }  // namespace dmf::engine

@@ -5,7 +5,7 @@
 namespace dmf::engine {
 
 Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks, const Ghosts& ghosts,
-                 const Parameters& parameters) {
+                 const Bonds& bonds, const Parameters& parameters) {
   Virial result;
   result.of_bead.resize(beads.size());
   std::vector<Eigen::Matrix3d> of_bead(beads.size(), Eigen::Matrix3d::Zero());
@@ -17,6 +17,8 @@ Virial virial_of(const Beads& beads, const std::vector<NeighbourBlock>& blocks, 
     if (parameters.boundaries.shear_rate != 0)
       for_each_pair_stress<PairForce::friction>(block, beads, ghosts, parameters, share);
   }
+  bonds.for_each_stress(
+      beads, [&](std::uint32_t i, const Vector3d&, const Eigen::Matrix3d& stress) { of_bead[i] += stress; });
   for (std::size_t i = 0; i < beads.size(); ++i) {
     result.total += of_bead[i];
     result.of_bead[i] = static_cast<float>(of_bead[i].trace() / 3.0);

@@ -35,6 +35,30 @@ std::vector<Shape> all_shapes(const StudyOptions& options) {
     run.radius = 5;
     run.subdivisions = 3;
   }
+  // Of a species of its own: a_mm of its beads, a_lm with the liquid.
+  const auto tighten = [](MembraneRun& run, double own, double with_liquid) {
+    run.own_repulsion = own;
+    run.liquid_on_membrane = with_liquid;
+    run.stiffness.local_area_stiffness = 100;
+  };
+  {
+    MembraneRun& run = add("tight_sphere2");
+    run.subdivisions = 2;
+    tighten(run, 25, 100);
+  }
+  for (const double own : {0.0, 5.0}) {
+    MembraneRun& run = add(own == 0 ? "tight_sphere3_a_mm=0" : "tight_sphere3");
+    run.subdivisions = 3;
+    tighten(run, own, 25);
+    run.stiffness.shear_modulus = 60;
+  }
+  {
+    MembraneRun& run = add("tight_red_cell");
+    run.red_cell = true;
+    run.radius = 5;
+    run.subdivisions = 3;
+    tighten(run, 20, 50);
+  }
   // A sphere whose volume goes down to that of a red cell. The liquid goes through, so that it can.
   for (const bool flat : {true, false}) {
     MembraneRun& run = add(flat ? "deflated_flat" : "deflated");
