@@ -103,7 +103,7 @@ void check_pairs(const Parameters& parameters, std::vector<std::string>& found) 
                                     ? ""
                                     : ", and an asymmetric table: forces would not be equal and opposite"));
   }
-  const bool has_wall = parameters.domain.has_wall();
+  const bool has_wall = parameters.domain.has_wall() || parameters.label_grid.grid;
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) {
       const bool with_wall = names[j] == wall_name;

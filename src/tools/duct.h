@@ -41,6 +41,9 @@ struct DuctResult {
   }
 };
 
+/// Domain and solid of such a channel.
+void lay_duct(const DuctRun& run, engine::Parameters& parameters);
+
 /// @throws engine::Instability.
 DuctResult run_duct(const DuctRun& run);
 
