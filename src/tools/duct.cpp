@@ -25,6 +25,7 @@ engine::Parameters parameters_of(const DuctRun& run) {
   parameters.liquid.dissipation_exponent = 0.5;
   parameters.liquid.initial_density = parameters.liquid.bulk_density = 4;
   lay_duct(run, parameters);
+  if (!run.wall_friction) parameters.mixture.pairs = {{"liquid", "wall", {run.wall_repulsion, 0, 0}}};
   return parameters;
 }
 
