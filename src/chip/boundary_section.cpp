@@ -13,8 +13,8 @@ using engine::YamlReader;
 
 namespace {
 
-const std::vector<std::string> kReflections{"bounce_back", "bounce_forward", "specular",
-                                            "maxwellian",  "thin_layer",     "symmetric"};
+const std::vector<std::string> kReflections{"bounce_back", "bounce_forward", "specular",        "maxwellian",
+                                            "thin_layer",  "symmetric",      "frozen_particles"};
 
 Reflection read_reflection(const YamlReader& section, const std::string& key, Reflection otherwise) {
   if (!section.has(key)) return otherwise;
@@ -48,6 +48,11 @@ void read_boundaries(const YamlReader& root, engine::Parameters& parameters) {
   }
   boundaries.layer_thickness =
       section->quantity("layer_thickness", Dimension::length, {}, boundaries.layer_thickness);
+  if (const auto frozen = section->optional_mapping("frozen_particles")) {
+    if (frozen->has("attraction")) boundaries.frozen_particles.attraction = frozen->number("attraction", {});
+    boundaries.frozen_particles.lateral_friction =
+        frozen->number("lateral_friction", {}, boundaries.frozen_particles.lateral_friction);
+  }
   boundaries.lower_velocity = read_velocity(*section, "lower_velocity");
   boundaries.upper_velocity = read_velocity(*section, "upper_velocity");
   boundaries.shear_rate = section->number("shear_rate", {}, boundaries.shear_rate);

@@ -127,9 +127,12 @@ class Digest {
             counts_own_beads, counts_liquid, counted_by_liquid);
   }
   void add(const engine::BoundaryParameters& boundaries) {
-    const auto& [lower_reflection, upper_reflection, layer_thickness, lower_velocity, upper_velocity,
-                 shear_rate] = boundaries;
+    const auto& [lower_reflection, upper_reflection, layer_thickness, frozen_particles, lower_velocity,
+                 upper_velocity, shear_rate] = boundaries;
     (*this)(lower_reflection, upper_reflection, layer_thickness, lower_velocity, upper_velocity, shear_rate);
+    if (!boundaries.has(engine::Reflection::frozen_particles)) return;
+    const auto& [attraction, lateral_friction] = frozen_particles;
+    (*this)(attraction, lateral_friction);
   }
   void add(const engine::Domain& domain) {
     const auto& [lower, upper, lower_side, upper_side] = domain;

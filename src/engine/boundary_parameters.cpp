@@ -25,10 +25,19 @@ void check_reflections(const Domain& domain, const BoundaryParameters& boundarie
         found.push_back(key + ": symmetric beside a wall of beads, allowed: without walls, they end there");
       if (side == Side::wall && reflection == Reflection::symmetric)
         found.push_back(key + ": symmetric on a wall of beads, allowed: a side without beads");
+      if (side == Side::wall && reflection == Reflection::frozen_particles)
+        found.push_back(key + ": frozen_particles on a wall of beads, allowed: a side without beads");
     }
   if (!(boundaries.layer_thickness > 0 && boundaries.layer_thickness <= 0.5))
     found.push_back(fmt::format("boundaries.layer_thickness: {}, allowed: above 0 up to 0.5 (r_c)",
                                 boundaries.layer_thickness));
+  const auto& [attraction, lateral_friction] = boundaries.frozen_particles;
+  if (attraction && !(*attraction >= -200 && *attraction <= 200))
+    found.push_back(
+        fmt::format("boundaries.frozen_particles.attraction: {}, allowed: -200 to 200", *attraction));
+  if (!(lateral_friction >= 0 && lateral_friction <= 1000))
+    found.push_back(fmt::format(
+        "boundaries.frozen_particles.lateral_friction: {}, allowed: 0 to 1000 (m / tau)", lateral_friction));
 }
 
 void check_velocities(const Parameters& parameters, std::vector<std::string>& found) {
@@ -71,9 +80,7 @@ void check_shear(const Parameters& parameters, std::vector<std::string>& found) 
 /// What does not know of images that are more than shifted, or of a plane.
 void check_company(const Parameters& parameters, std::vector<std::string>& found) {
   const BoundaryParameters& boundaries = parameters.boundaries;
-  bool mirrors = false;
-  for (const auto& sides : {boundaries.lower_reflection, boundaries.upper_reflection})
-    for (const Reflection reflection : sides) mirrors = mirrors || reflection == Reflection::symmetric;
+  const bool mirrors = boundaries.has(Reflection::symmetric);
   if (mirrors && !parameters.mixture.liquids.empty())
     found.push_back("boundaries: symmetric sides with several species, allowed: with one");
   if (parameters.label_grid.grid && (mirrors || boundaries.shear_rate != 0 || parameters.dimensions == 2))

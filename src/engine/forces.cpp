@@ -23,7 +23,8 @@ Kernels kernels_named(const std::string& name, const Parameters& parameters) {
 Forces::Forces(const Parameters& parameters, const std::string& kernel)
     : kernels_(kernels_named(kernel, parameters)),
       kernel_name_(kernel == "auto" ? vector_kernels().front() : kernel),
-      constants_{} {
+      constants_{},
+      frozen_particles_(parameters) {
   constants_.laws = pair_table(parameters);
   constants_.spline = spline_shape(parameters.spline);
   rows_ = law_rows(constants_.laws, parameters);
@@ -93,6 +94,7 @@ void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, cons
   for (std::size_t b = 0; b < blocks.size(); ++b) kernel(pass, blocks[b]);
   if (pairs.ghosts().needed() && (part == PairForce::all || part == PairForce::random))
     pairs.ghosts().correct_own_noise(beads, to);
+  if (frozen_particles_.needed()) frozen_particles_.add_forces(part, beads, to);
 }
 
 }  // namespace dmf::engine

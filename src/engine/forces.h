@@ -6,6 +6,7 @@
 #include "engine/kernels/kernels.h"
 #include "engine/pairs.h"
 #include "engine/parameters.h"
+#include "engine/walls/frozen_particles.h"
 #include "engine/walls/walls.h"
 
 namespace dmf::engine {
@@ -36,6 +37,7 @@ class Forces {
   std::string kernel_name_;
   PairPass constants_;
   AlignedVector<LawRow> rows_;  ///< of a mixture
+  FrozenParticles frozen_particles_;
 };
 
 }  // namespace dmf::engine

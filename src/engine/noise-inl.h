@@ -45,6 +45,13 @@ HWY_INLINE Unsigned body_key(Unsigned index) {
   return wall_key(index + Unsigned(0x80000000u));
 }
 
+/// Fixed key of a frozen particle's force on a bead: as if those of microparticles were numbered on, from
+/// 3 x 2^30. @param index  3 x side + component.
+template <class Unsigned>
+HWY_INLINE Unsigned frozen_key(Unsigned index) {
+  return wall_key(index + Unsigned(0xc0000000u));
+}
+
 }  // namespace dmf::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -11,13 +11,14 @@ namespace dmf::engine {
 /// | pair       | zeta_ij of the random force, liquid-liquid  | both bead ids, symmetric            |
 /// | wall       | zeta_ij of the random force, liquid-wall    | bead id, wall bead index            |
 /// | body       | zeta_ij of the random force, liquid-body     | bead id, index of the body's bead   |
+/// | frozen     | the force of a frozen particle on a bead    | bead id, side, component            |
 /// | velocity   | thermal velocities of a newly placed bead   | bead id, component                  |
 /// | sensing    | noise of a reading of the capacitance       | channel                             |
 /// | chain      | place and walk of a chain's beads           | chain id, number of the draw        |
 /// | reflection | velocity of a bead that a side sends back   | bead id, number of the side it met  |
 /// | mirror     | zeta_ij with the mirror image of a bead     | both bead ids, symmetric; mirrors   |
 ///
-/// A wall or body pair mixes the liquid bead's key of the pair stream with a fixed key of the other bead.
+/// A wall, body or frozen pair mixes the liquid bead's key of the pair stream with a fixed key of the other.
 /// The steps of the reflection stream are drifts: BAOAB has two a step.
 /// The pair stream costs one hash a bead and step (`bead_key`) plus one hash a pair (`mix` in noise-inl.h).
 enum class Stream : std::uint32_t {

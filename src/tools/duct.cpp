@@ -24,26 +24,8 @@ engine::Parameters parameters_of(const DuctRun& run) {
   parameters.liquid.random_amplitude = 3;  // gamma 4.5
   parameters.liquid.dissipation_exponent = 0.5;
   parameters.liquid.initial_density = parameters.liquid.bulk_density = 4;
-  const double out = run.half_width + thickness;
-  engine::Domain& domain = parameters.domain;
-  domain.lower = {0, -out, -out};
-  domain.upper = {run.length, out, out};
-  domain.lower_side =
-      domain.upper_side = {engine::Side::periodic, engine::Side::reflecting, engine::Side::reflecting};
-  auto grid = std::make_shared<engine::LabelGrid>();
-  grid->origin = domain.lower;
-  grid->voxel_size.setConstant(voxel);
-  for (int axis = 0; axis < 3; ++axis)
-    grid->voxels[axis] = static_cast<int>(std::lround(domain.size()[axis] / voxel));
-  for (int z = 0; z < grid->voxels[2]; ++z)
-    for (int y = 0; y < grid->voxels[1]; ++y)
-      for (int x = 0; x < grid->voxels[0]; ++x) {
-        const double reach = std::max(std::abs((y + 0.5) * voxel - out), std::abs((z + 0.5) * voxel - out));
-        grid->labels.push_back(reach > run.half_width ? engine::LabelGrid::solid : engine::LabelGrid::fluid);
-      }
-  parameters.label_grid.grid = grid;
-  parameters.label_grid.lattice_constant = 2 * voxel;
-  parameters.label_grid.attraction = run.wall_repulsion;
+  lay_duct(run, parameters);
+  if (!run.wall_friction) parameters.mixture.pairs = {{"liquid", "wall", {run.wall_repulsion, 0, 0}}};
   return parameters;
 }
 
@@ -99,6 +81,29 @@ double duct_velocity(double y, double z, double half_y, double half_z) {
     sum += (n % 4 == 1 ? 1 : -1) * (1 - ratio) * std::cos(k * y) / (1.0 * n * n * n);
   }
   return 16 * half_y * half_y / (pi * pi * pi) * sum;
+}
+
+void lay_duct(const DuctRun& run, engine::Parameters& parameters) {
+  const double out = run.half_width + thickness;
+  engine::Domain& domain = parameters.domain;
+  domain.lower = {0, -out, -out};
+  domain.upper = {run.length, out, out};
+  domain.lower_side =
+      domain.upper_side = {engine::Side::periodic, engine::Side::reflecting, engine::Side::reflecting};
+  auto grid = std::make_shared<engine::LabelGrid>();
+  grid->origin = domain.lower;
+  grid->voxel_size.setConstant(voxel);
+  for (int axis = 0; axis < 3; ++axis)
+    grid->voxels[axis] = static_cast<int>(std::lround(domain.size()[axis] / voxel));
+  for (int z = 0; z < grid->voxels[2]; ++z)
+    for (int y = 0; y < grid->voxels[1]; ++y)
+      for (int x = 0; x < grid->voxels[0]; ++x) {
+        const double reach = std::max(std::abs((y + 0.5) * voxel - out), std::abs((z + 0.5) * voxel - out));
+        grid->labels.push_back(reach > run.half_width ? engine::LabelGrid::solid : engine::LabelGrid::fluid);
+      }
+  parameters.label_grid.grid = grid;
+  parameters.label_grid.lattice_constant = 2 * voxel;
+  parameters.label_grid.attraction = run.wall_repulsion;
 }
 
 double mean_duct_velocity(double half_y, double half_z) {

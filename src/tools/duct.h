@@ -19,6 +19,7 @@ struct DuctRun {
   std::uint64_t seed = 1;
   double time_step = 0.01;
   double wall_repulsion = 9.68;  ///< a of fluid and wall, k_BT / r_c
+  bool wall_friction = true;     ///< of fluid and wall; without it nothing but bouncing back holds the fluid
   double acceleration = 0.1;     ///< r_c / tau^2
   double length = 30;            ///< of the period along the channel, r_c
   double half_width = 10;        ///< r_c, a multiple of 1/2
@@ -40,6 +41,9 @@ struct DuctResult {
     return (cell + 0.5) * 2 * half_width / cells - half_width;
   }
 };
+
+/// Domain and solid of such a channel.
+void lay_duct(const DuctRun& run, engine::Parameters& parameters);
 
 /// @throws engine::Instability.
 DuctResult run_duct(const DuctRun& run);

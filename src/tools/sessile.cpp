@@ -1,9 +1,11 @@
 #include "tools/sessile.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/observe/contact_angle.h"
+#include "tools/flat_cap.h"
 #include "tools/largest_droplet.h"
 
 namespace dmf::tools {
@@ -11,7 +13,15 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-void sample(const engine::Simulation& simulation, engine::SessileAngle& meter, double& temperature) {
+/// What looks at a droplet, over the whole measurement or half of it.
+struct Meters {
+  Meters(double half_width, double height, double density)
+      : surface(half_width, height), cap(density, half_width) {}
+  engine::SessileAngle surface;
+  CapMeter cap;
+};
+
+void sample(const engine::Simulation& simulation, Meters& meter, double& temperature) {
   const auto snapshot = simulation.observe({true, false});
   const engine::DropletObservation* largest = largest_droplet(*snapshot);
   if (!largest) return;
@@ -19,8 +29,12 @@ void sample(const engine::Simulation& simulation, engine::SessileAngle& meter, d
                              static_cast<float>(largest->centroid.y()),
                              static_cast<float>(simulation.parameters().domain.lower.z()));
   for (std::size_t k = 0; k < snapshot->positions.size(); ++k)
-    if (snapshot->bead_droplets[k] == largest->id) meter.add(snapshot->positions[k] - foot);
-  meter.count_sample();
+    if (snapshot->bead_droplets[k] == largest->id) {
+      meter.surface.add(snapshot->positions[k] - foot);
+      meter.cap.add(snapshot->positions[k] - foot);
+    }
+  meter.surface.count_sample();
+  meter.cap.count_sample();
   temperature += snapshot->temperature;
 }
 
@@ -53,9 +67,9 @@ SessileResult run_sessile(const SessileRun& run) {
   const auto steps_of = [dt](double time) { return static_cast<std::uint64_t>(std::lround(time / dt)); };
   for (std::uint64_t step = 0; step < steps_of(run.settle); ++step) simulation.step();
 
-  engine::SessileAngle halves[2] = {{half_width, 2.2 * run.radius + 4.0},
-                                    {half_width, 2.2 * run.radius + 4.0}};
-  engine::SessileAngle whole(half_width, 2.2 * run.radius + 4.0);
+  const double density = parameters.liquid.bulk_density, height = 2.2 * run.radius + 4.0;
+  Meters halves[2] = {{half_width, height, density}, {half_width, height, density}};
+  Meters whole(half_width, height, density);
   SessileResult result;
   const std::uint64_t looks = steps_of(run.measure) / parameters.observe_interval;
   double ignored = 0;
@@ -64,14 +78,19 @@ SessileResult run_sessile(const SessileRun& run) {
     sample(simulation, whole, result.temperature);
     sample(simulation, halves[look < looks / 2 ? 0 : 1], ignored);
   }
-  const double density = parameters.liquid.bulk_density;
-  const auto angle = whole.angle(density), first = halves[0].angle(density),
-             second = halves[1].angle(density);
-  if (!angle || !first || !second)
+  const auto angle = whole.surface.angle(density), first = halves[0].surface.angle(density),
+             second = halves[1].surface.angle(density);
+  if (!run.flat && (!angle || !first || !second))
     throw std::runtime_error("no circle fits the droplet's surface; measure longer");
-  result.angle = *angle;
-  result.first_half = *first;
-  result.second_half = *second;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  result.angle = angle.value_or(none);
+  result.first_half = first.value_or(none);
+  result.second_half = second.value_or(none);
+  result.by_edge = whole.cap.angle_of_edge().value_or(none);
+  result.by_mean_height = whole.cap.angle_of_mean_height();
+  result.by_mean_height_first = halves[0].cap.angle_of_mean_height();
+  result.by_mean_height_second = halves[1].cap.angle_of_mean_height();
+  result.thickness = whole.cap.middle_thickness();
   result.temperature /= static_cast<double>(looks);
   return result;
 }

@@ -43,6 +43,28 @@ TEST(BoundaryScene, ReadsWhatEachSideDoes) {
   EXPECT_EQ(sheared.dimensions, 2);
 }
 
+TEST(BoundaryScene, ReadsFrozenParticlesAndCountsThemWhereASideHasThem) {
+  const std::string closed = "domain: {lower: [0, 0, 0], upper: [9, 4, 9], sides: {z: closed}}\n";
+  const std::string sides = "boundaries: {z: frozen_particles, frozen_particles: {";
+  const engine::Parameters read =
+      parse(closed + sides + "attraction: -12, lateral_friction: 3.5}}").parameters;
+  EXPECT_EQ(read.boundaries.lower_reflection[2], Reflection::frozen_particles);
+  EXPECT_EQ(read.boundaries.frozen_particles.attraction, -12);
+  EXPECT_EQ(read.boundaries.frozen_particles.lateral_friction, 3.5);
+  const SceneContent with = content_of(parse(closed + sides + "lateral_friction: 3.5}}"));
+  EXPECT_EQ(differing_parts(content_of(parse(closed + sides + "lateral_friction: 4}}")), with), "boundaries");
+  EXPECT_EQ(
+      differing_parts(content_of(parse(closed + sides + "attraction: -12, lateral_friction: 3.5}}")), with),
+      "boundaries");
+  // A number that no side asks for changes nothing.
+  EXPECT_EQ(
+      differing_parts(content_of(parse(closed + "boundaries: {frozen_particles: {lateral_friction: 4}}")),
+                      content_of(parse(closed))),
+      "");
+  EXPECT_TRUE(holds(refused(closed + sides + "lateral_friction: -1}}"),
+                    "boundaries.frozen_particles.lateral_friction: -1, allowed: 0 to 1000"));
+}
+
 TEST(BoundaryScene, RunsWithAWallThatShowsNoContactAngle) {
   Experiment experiment(parse(kChannel), {1, "auto"});
   for (int k = 0; k < 100; ++k) experiment.step();

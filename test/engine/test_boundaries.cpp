@@ -11,9 +11,9 @@
 namespace dmf::engine {
 namespace {
 
-constexpr Reflection every_reflection[] = {Reflection::bounce_back, Reflection::bounce_forward,
-                                           Reflection::specular,    Reflection::maxwellian,
-                                           Reflection::thin_layer,  Reflection::symmetric};
+constexpr Reflection every_reflection[] = {
+    Reflection::bounce_back, Reflection::bounce_forward, Reflection::specular,        Reflection::maxwellian,
+    Reflection::thin_layer,  Reflection::symmetric,      Reflection::frozen_particles};
 
 Parameters closed_box(double size, Reflection reflection) {
   Parameters parameters = periodic_box(size);

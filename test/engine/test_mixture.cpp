@@ -322,6 +322,21 @@ TEST(PairTable, ThatIsNotSoundIsRefusedByWhatIsWrong) {
                     "species: 8 beside liquid, allowed: up to 7"));
 }
 
+TEST(PairTable, NeedsALawWithTheWallWhereTheOnlyWallIsTheSolidOfALabelGrid) {
+  Parameters parameters = two_liquids({6, 6, 6}, 50);
+  auto grid = std::make_shared<LabelGrid>();
+  grid->voxel_size.setConstant(1);
+  grid->voxels = {6, 6, 6};
+  grid->labels.assign(216, LabelGrid::fluid);
+  std::fill_n(grid->labels.begin(), 36, LabelGrid::solid);
+  parameters.label_grid.grid = grid;
+  parameters.label_grid.attraction = 20;
+  EXPECT_TRUE(holds(refusal([&] { Simulation(parameters, ContactAngleCurve::lan2016()); }),
+                    "pairs: no law for oil and wall, allowed"));
+  parameters.mixture.pairs.push_back({"oil", "wall", {20, 0, 3}});
+  EXPECT_NO_THROW(Simulation(parameters, ContactAngleCurve::lan2016()));
+}
+
 TEST(Notices, TellThatARepulsionThatDiffersHasNoPotential) {
   Parameters parameters = oil_bath();
   EXPECT_TRUE(notices(parameters).empty());

@@ -156,6 +156,7 @@ void Reflections::send_back(const Flight& flight, Triple& at, Triple& moving, Tr
       }
       case Reflection::specular:
       case Reflection::symmetric:
+      case Reflection::frozen_particles:
         for (int k = 0; k < 3; ++k) way[k] *= k == axis ? -left : left;
         moving[axis] = -moving[axis];
         seen[axis] = -seen[axis];
