@@ -23,8 +23,8 @@ TEST(Surfactant, GoesToTheSurfaceHeadsInwardsAndLowersTheTensionByMoreThanAnIdea
   // Placed anywhere: three in five were there by chance, without an orientation.
   EXPECT_GT(covered.at_surface, 0.9);
   EXPECT_GT(covered.orientation, 0.6);
-  // Few molecules in a surface push like a gas, with coverage k_BT; many push more, since they take each
-  // other's place. Over seeds the tensions spread by 0.2 and 0.1.
+  // Molecules in a surface that do not feel each other push like a gas, with coverage k_BT; many push more,
+  // since they take each other's place. Over seeds the tensions spread by 0.2 and 0.1.
   EXPECT_GT(clean.tension - covered.tension, how.coverage * 1.0);
   EXPECT_LT(clean.tension - covered.tension, 2.5);
   // Outermost are the tails.
