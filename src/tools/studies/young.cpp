@@ -107,7 +107,7 @@ Findings study_young(const StudyOptions& options) {
         angles.finding(label, "angle", "contact angle of a plug (degrees)", 1)
             .against_paper({row.angle, "Chen"})
             .against_theory(reference(std::acos(std::clamp(cosine, -1.0, 1.0)) / degree, 1, "Young"))
-            .within_margin(6));
+            .within_margin(6));  // what one run is good to at the larger angles
     findings.push_back(angles.finding(label, "first_half", "in the first half of the measurement", 1));
     findings.push_back(angles.finding(label, "second_half", "in the second half of the measurement", 1));
     findings.push_back(of_walls.finding(label, "tension", "tension of liquid and wall (k_BT/r_c^2)", 2));
