@@ -82,6 +82,12 @@ Findings study_interfacial_tension(const StudyOptions& options);
 Findings study_poiseuille(const StudyOptions& options);
 /// Plain DPD along a duct (Chen 3.1).
 Findings study_square_channel(const StudyOptions& options);
+/// A plug of one liquid in another: angle on walls against Young's (Chen 3.3.1).
+Findings study_young(const StudyOptions& options);
+/// The same driven along a square channel: angles, shape, velocity (Chen 3.3.2).
+Findings study_plugs(const StudyOptions& options);
+/// Flat droplets on well-wetting walls: angle by volume and edge or mean height (Lan 5.2.9).
+Findings study_thin_film(const StudyOptions& options);
 /// A droplet on ridges: static angle against Cassie and Baxter, front and velocity under a force (Yao).
 Findings study_structured_wall(const StudyOptions& options);
 /// Liquid that goes into pores, by itself or pushed, over the contact angle (Liu 4.2).
