@@ -80,6 +80,7 @@ class SoakTest(unittest.TestCase):
         print(f"{seconds} s, {len(samples)} runs, {taken} commands taken: {samples[0][1]:.1f} MB to {samples[-1][1]:.1f} MB, "
               f"slope {slope:.2f} +- {error:.2f} MB an hour, peak {memory_of(pid, 'VmHWM'):.1f} MB; within a run "
               f"{sum(within) / taken * 1e3:.2f} kB a command")
+        print("on the way:", " ".join(f"{memory:.1f}" for _, memory in samples[::max(1, len(samples) // 20)]), "MB")
         self.assertLess(slope, FLAT + 3 * error)
         self.assertLess(samples[-1][1] - samples[0][1], 5)
 
