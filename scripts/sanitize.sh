@@ -5,7 +5,7 @@
 #   address   AddressSanitizer and UndefinedBehaviorSanitizer, with g++
 #   thread    ThreadSanitizer, with clang++, whose OpenMP tells it about its barriers
 #   TESTS     a regular expression, as of ctest -R; without one all of them
-# JOBS in the environment: compilers at a time (each takes up to 2 GB), by default one a processor.
+# JOBS in the environment: compilers, then tests at a time (a compiler takes up to 2 GB), by default one a processor.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -55,6 +55,7 @@ mkdir -p "$reports"
 export OMP_NUM_THREADS=2
 # Tests of the node wait by wall time, and everything takes ten times as long.
 export DMF_TEST_PATIENCE=10
+export DMF_TEST_TIME_LIMIT=3000
 # roscpp leaves singletons behind, and the cells of graphs that the loader keeps.
 printf 'leak:libros\nleak:librosconsole\nleak:liblog4cxx\nleak:libapr\nleak:libcrypto\n' >"$build/leaks"
 export LSAN_OPTIONS="suppressions=$build/leaks print_suppressions=0"
@@ -72,8 +73,8 @@ fi
 status=0
 for folder in test/engine test/chip test/controller test/node; do
   # What asks for memory or time as such is another matter under a sanitizer.
-  ctest --test-dir "$build/$folder" --output-on-failure --label-exclude '^long$' --timeout 1500 -R "$tests" \
-    -E 'test_memory|overload' || status=1
+  ctest --test-dir "$build/$folder" --output-on-failure --label-exclude '^long$' --parallel "${JOBS:-$(nproc)}" \
+    -R "$tests" -E 'test_memory|overload' || status=1
 done
 if [ -n "$(ls -A "$reports")" ]; then
   head -n 40 "$reports"/* >&2

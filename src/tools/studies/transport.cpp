@@ -202,7 +202,7 @@ const std::vector<Description>& descriptions() {
        "static and rolling friction of the microparticle on the wall",
        "f",
        frictions({{0.2, 0.2}, {0.4, 0.2}, {0.4, 0.4}, {0.8, 0.4}, {0.8, 0.8}, {1.6, 0.8}}),
-       30000,
+       40000,
        40,
        500,
        {picked_up(), passes("passes_0", "passes x = 0 at (tau)", 0),
