@@ -31,14 +31,17 @@ Trajectory::Trajectory(const std::vector<TransportRecord>& records, int micropar
   }
 }
 
-double Trajectory::time_at(double x) const {
+double Trajectory::first_pass(double x, double TransportRecord::*place) const {
   for (std::size_t k = 1; k < records_.size(); ++k) {
     const TransportRecord &before = records_[k - 1], &after = records_[k];
-    if (before.x < x && after.x >= x)
-      return before.time + (x - before.x) / (after.x - before.x) * (after.time - before.time);
+    if (before.*place < x && after.*place >= x)
+      return before.time + (x - before.*place) / (after.*place - before.*place) * (after.time - before.time);
   }
   return NAN;
 }
+
+double Trajectory::time_at(double x) const { return first_pass(x, &TransportRecord::x); }
+double Trajectory::droplet_time_at(double x) const { return first_pass(x, &TransportRecord::droplet_x); }
 
 double Trajectory::time_picked_up() const {
   for (const TransportRecord& record : records_)

@@ -14,6 +14,7 @@ class Trajectory {
 
   /// When it first passes x on its way to +x, linear between records, tau.
   double time_at(double x) const;
+  double droplet_time_at(double x) const;  ///< the same of the largest droplet's centroid
   double time_picked_up() const;
   double time_dropped_off() const;  ///< by the droplet that did not take it up again
   double x_dropped_off() const;
@@ -42,6 +43,7 @@ class Trajectory {
 
  private:
   std::optional<std::size_t> drop_off() const;
+  double first_pass(double x, double TransportRecord::*place) const;
   double mean(double from_time, double TransportRecord::*value) const;
   double last_before(double time, double TransportRecord::*value) const;
 

@@ -42,6 +42,7 @@ TEST(Trajectory, TellsPickupPassageAndDropOff) {
   EXPECT_EQ(way.time_picked_up(), 100);
   EXPECT_NEAR(way.time_at(-10), 100 + std::sqrt(20 / 2e-6), 0.01);
   EXPECT_TRUE(std::isnan(way.time_at(10)));
+  EXPECT_NEAR(way.droplet_time_at(-7), way.time_at(-10), 1e-9);  // 3 ahead of it
   EXPECT_EQ(way.time_dropped_off(), 4100);
   EXPECT_NEAR(way.x_dropped_off(), 2, 1e-9);
   EXPECT_FALSE(way.carried_at_end());
