@@ -66,6 +66,13 @@ struct SavedRun {
   chip::Checkpoint checkpoint;
 };
 
+/// An EngineThread::advance() in progress.
+struct Advance {
+  std::uint64_t asked = 0;
+  std::uint64_t done = 0;
+  std::promise<Outcome> answer;
+};
+
 /// The thread that owns the experiment: takes requests between two steps, steps, and leaves frames in the
 /// outbox. All requests may come from any thread, block until the engine has answered, which takes at most
 /// one step (advance() excepted), and throw EngineStopped when it no longer will. No ROS in here.
@@ -125,13 +132,6 @@ class EngineThread {
 
  private:
   using Clock = std::chrono::steady_clock;
-
-  /// An advance() in progress.
-  struct Advance {
-    std::uint64_t asked;
-    std::uint64_t done = 0;
-    std::promise<Outcome> answer;
-  };
 
   /// Runs `request` on the engine thread, between two steps, and hands back what it returns.
   template <class Request>

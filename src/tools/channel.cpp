@@ -43,15 +43,25 @@ ChannelProfile run_channel(const ChannelRun& run) {
   const auto go_on = [&](double time) {
     for (auto k = std::llround(time / parameters.time_step); k > 0; --k) experiment.step();
   };
-  go_on(run.settle);
+  ChannelProfile profile;
+  const auto look = [&] {
+    go_on(looks_apart);
+    auto snapshot = experiment.observe({true});
+    const auto outside =
+        std::count_if(snapshot->positions.begin(), snapshot->positions.end(), [&](const auto& at) {
+          return at.z() < parameters.domain.lower.z() || at.z() > parameters.domain.upper.z();
+        });
+    profile.most_outside = std::max(profile.most_outside, static_cast<std::size_t>(outside));
+    return snapshot;
+  };
+  for (int k = 0; k < static_cast<int>(run.settle / looks_apart); ++k) look();
 
   const std::size_t bins = static_cast<std::size_t>(run.bins);
   const engine::Vector3d size = parameters.domain.size();
   std::vector<double> beads(bins), velocity(bins), squares(bins);
   const int looks = std::max(1, static_cast<int>(run.measure / looks_apart));
-  for (int look = 0; look < looks; ++look) {
-    go_on(looks_apart);
-    const auto snapshot = experiment.observe({true});
+  for (int k = 0; k < looks; ++k) {
+    const auto snapshot = look();
     std::vector<double> of_slab(bins), along(bins), all(bins);
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
       const double fraction = (snapshot->positions[k].z() - parameters.domain.lower.z()) / size.z();
@@ -67,7 +77,6 @@ ChannelProfile run_channel(const ChannelRun& run) {
     }
   }
 
-  ChannelProfile profile;
   profile.half_width = size.z() / 2;
   const double thickness = size.z() / run.bins;
   const double slab_volume = thickness * size.x() * (parameters.dimensions == 2 ? 1.0 : size.y());
@@ -103,6 +112,23 @@ ChannelFlow flow_of(const ChannelProfile& profile, double acceleration) {
     flow.coolest_at_wall = std::min(flow.coolest_at_wall, profile.temperature[slab]);
     flow.hottest_at_wall = std::max(flow.hottest_at_wall, profile.temperature[slab]);
   }
+  return flow;
+}
+
+ShearFlow shear_of(const ChannelProfile& profile, double speed) {
+  double product = 0, squares = 0, density = 0, count = 0;
+  for (std::size_t slab = 0; slab < profile.z.size(); ++slab) {
+    const double z = profile.z[slab];
+    if (std::abs(z) >= 0.6 * profile.half_width) continue;
+    product += z * profile.velocity[slab];
+    squares += z * z;
+    density += profile.density[slab];
+    count += 1;
+  }
+  ShearFlow flow{};
+  flow.slip = 1 - profile.half_width * product / squares / speed;
+  flow.density = (profile.density.front() + profile.density.back()) / 2 / (density / count);
+  flow.temperature = (profile.temperature.front() + profile.temperature.back()) / 2;
   return flow;
 }
 

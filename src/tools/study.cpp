@@ -100,6 +100,8 @@ const std::vector<Study>& all_studies() {
         {"interfacial_tension", "two liquids that don't mix, against Chen's value and Groot and Warren's fit",
          study_interfacial_tension},
         {"poiseuille", "plain DPD in a channel, 3D and 2D, against Lan's and the parabola", study_poiseuille},
+        {"boundaries", "every kind of side: slip, density and temperature at it, and whether it holds",
+         study_boundaries},
         {"square_channel", "plain DPD along a square channel against the series, mass flow against Chen's",
          study_square_channel},
         {"young", "two liquids on a wall: contact angle against Young's and Chen's", study_young},

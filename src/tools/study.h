@@ -80,6 +80,7 @@ Findings study_equation_of_state(const StudyOptions& options);
 Findings study_interfacial_tension(const StudyOptions& options);
 /// Plain DPD between walls, driven by a body force (Lan 2.3).
 Findings study_poiseuille(const StudyOptions& options);
+Findings study_boundaries(const StudyOptions& options);
 /// Plain DPD along a duct (Chen 3.1).
 Findings study_square_channel(const StudyOptions& options);
 /// A plug of one liquid in another: angle on walls against Young's (Chen 3.3.1).

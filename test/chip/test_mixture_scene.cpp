@@ -135,7 +135,7 @@ TEST(MixtureScene, ThatIsNotSoundIsRefusedByKeyAndLine) {
       {"upper: [9, 9, 1]}", "upper: [9, -9, 1]}", "lower is not below upper"},
       {"domain:", "spline: {attraction: 1}\ndomain:", "spline: together with a many-body repulsion"}};
   for (const auto& [from, to, said] : cases)
-    EXPECT_TRUE(holds(refusal([&] { parsed(changed(from, to)); }), said)) << to;
+    EXPECT_TRUE(holds(refusal([&, from = from, to = to] { parsed(changed(from, to)); }), said)) << to;
 }
 
 TEST(MixtureScene, DiffersByPartsOfItsOwnAndLeavesOtherScenesTheirHash) {

@@ -281,7 +281,7 @@ TEST_P(EveryKernel, GivesAMixtureOfOneAndTheSameLiquidTheForcesOfThatLiquidToThe
     mix_with_itself(system);
     System plain = system;
     plain.parameters.mixture = {};
-    const auto forces_of = [this](System& one) {
+    const auto forces_of = [](System& one) {
       Sorted sorted(one, GetParam());
       sorted.forces.density(one.beads, sorted.wall, sorted.bodies, sorted.pairs);
       sorted.forces.force(one.beads, sorted.wall, sorted.bodies, sorted.pairs);

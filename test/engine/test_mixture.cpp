@@ -94,7 +94,7 @@ TEST(TwoLiquids, DemixFromAMixtureAboveTheCriticalRepulsion) {
   Simulation mixing(two_liquids(size, 25), ContactAngleCurve::lan2016(), {1, "auto"});
   fill_layers(mixing);
   run(mixing, 3000);
-  const auto like_neighbours = [&size](const Simulation& simulation) {
+  const auto like_neighbours = [](const Simulation& simulation) {
     const auto snapshot = simulation.observe({true});
     double like = 0, all = 0;
     const Domain& domain = simulation.parameters().domain;
