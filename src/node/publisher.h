@@ -69,7 +69,6 @@ class Publisher {
   std::set<std::uint32_t> drawn_droplets_, drawn_microparticles_, drawn_membranes_;
   bool drawn_chains_ = false;
   std::uint32_t marker_subscribers_ = 0;
-  std::uint32_t transform_run_ = 0;
   std::uint64_t transform_stamp_ = 0;  ///< ns
   Clock::time_point next_diagnostics_ = Clock::now();
   Clock::time_point next_chip_markers_ = Clock::now();
