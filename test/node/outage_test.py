@@ -19,7 +19,7 @@ from dmf_sim.msg import ChipState, Event, RunRecord
 from rosgraph_msgs.msg import Clock
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-from chip_client import Chip, Listener  # noqa: E402
+from chip_client import PATIENCE, Chip, Listener  # noqa: E402
 from processes import ROOT, Process, chip, executable, resimulate, wait_until_recorded  # noqa: E402
 
 # A small disk that only the command in it sees; its files are handed over before it is gone.
@@ -50,7 +50,7 @@ class Master:
 
     def start(self):
         self._process = Process("rosmaster", "--core", "-p", str(self.port))
-        until = time.monotonic() + 20
+        until = time.monotonic() + 20 * PATIENCE
         while not rosgraph.is_master_online(f"http://127.0.0.1:{self.port}"):
             if time.monotonic() > until:
                 raise AssertionError("the master did not start")

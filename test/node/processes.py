@@ -6,6 +6,8 @@ import signal
 import subprocess
 import time
 
+from chip_client import PATIENCE
+
 ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", ".."))
 
 
@@ -23,7 +25,7 @@ class Process:
 
     def wait(self, timeout):
         """Its exit status."""
-        return self._process.wait(timeout)
+        return self._process.wait(timeout * PATIENCE)
 
 
 def executable(package, name):
@@ -44,7 +46,7 @@ def recorder(bag, *arguments):
 
 def wait_until_recorded(client):
     """The recorder listens to the chip."""
-    until = time.monotonic() + 30
+    until = time.monotonic() + 30 * PATIENCE
     while not client.record_checkpoint().success:
         if time.monotonic() > until:
             raise AssertionError("the recorder never listened")

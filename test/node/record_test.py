@@ -16,7 +16,7 @@ from dmf_sim.msg import ChipState, Command, DropletArray
 from rosgraph_msgs.msg import Clock
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-from chip_client import Chip, Listener  # noqa: E402
+from chip_client import PATIENCE, Chip, Listener  # noqa: E402
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", ".."))
 KINDS = {"/chip/state": ChipState, "/chip/droplets": DropletArray, "/chip/commands": Command}
@@ -57,7 +57,7 @@ class RecordTest(unittest.TestCase):
                              f"bag:={bag}", "threads:=1", "max_steps_per_second:=500")
         self.addCleanup(chip_launch.stop)
         chip = Chip()
-        until = time.monotonic() + 20
+        until = time.monotonic() + 20 * PATIENCE
         while not os.path.exists(bag + ".active"):
             self.assertLess(time.monotonic(), until, "the recorder never started")
             time.sleep(0.1)

@@ -17,7 +17,7 @@ import rostest
 from dmf_sim.msg import ChipState
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-from chip_client import Chip, Listener  # noqa: E402
+from chip_client import PATIENCE, Chip, Listener  # noqa: E402
 from processes import ROOT, chip, recorder, resimulate, wait_until_recorded  # noqa: E402
 
 RC = 1e-5  # m, one r_c of the test's scene
@@ -266,7 +266,7 @@ class ResimulateTest(unittest.TestCase):
         wait_until_recorded(client)
         accept(client.set_hv(63, 1000, True))
         accept(client.set_electrodes([1]))
-        until = time.monotonic() + 60
+        until = time.monotonic() + 60 * PATIENCE
         flushed = os.path.getsize(bag + ".active")
         while os.path.getsize(bag + ".active") < flushed + 300_000:
             self.assertLess(time.monotonic(), until, "the recorder wrote nothing")

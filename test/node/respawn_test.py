@@ -21,7 +21,7 @@ from dmf_sim.msg import Command, DropletArray, Event, MoveDropletAction, MoveDro
 from rosgraph_msgs.msg import Clock
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-from chip_client import Chip, Listener  # noqa: E402
+from chip_client import PATIENCE, Chip, Listener  # noqa: E402
 from controller_client import Client  # noqa: E402
 
 SCENES = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../scenes")
@@ -31,7 +31,7 @@ SCENE = os.path.join(SCENES, "tiny_line.yaml")
 def pid_of(node="/chip", other_than=None, timeout=30):
     """Process of a node that answers."""
     master = rosgraph.Master(rospy.get_name())
-    until = time.monotonic() + timeout
+    until = time.monotonic() + timeout * PATIENCE
     while time.monotonic() < until:
         try:
             pid = xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid(rospy.get_name())[2]
@@ -76,7 +76,7 @@ class RespawnTest(unittest.TestCase):
         """As Ctrl-C does, and waits until it has ended."""
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
-            process.wait(30)
+            process.wait(30 * PATIENCE)
 
     def chip(self, other_than=None):
         pid = pid_of(other_than=other_than)
@@ -140,7 +140,7 @@ class RespawnTest(unittest.TestCase):
         times = [m.clock.to_nsec() for m in clock.messages]
         self.assertEqual(times, sorted(times), "/clock stepped back")
         # A fourth one stands there while it is written and until the oldest is removed.
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 10 * PATIENCE
         while len(self.automatic()) > 3 and time.monotonic() < deadline:
             time.sleep(0.05)
         self.assertLessEqual(len(self.automatic()), 3)
@@ -245,7 +245,7 @@ class RespawnTest(unittest.TestCase):
             sensed = Listener("/chip_controller/droplets", SensedDropletArray)
             sensed.wait(lambda m: 0 in [d.channel for d in m.droplets])
             handle = move.send(MoveDropletGoal(channel=0, target=3))
-            half_way = time.monotonic() + 60
+            half_way = time.monotonic() + 60 * PATIENCE
             while not any(f.progress > 0.4 for f in handle.feedback):
                 self.assertLess(time.monotonic(), half_way, handle.feedback[-1:])
                 time.sleep(0.01)
