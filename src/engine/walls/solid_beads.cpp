@@ -90,16 +90,18 @@ std::vector<std::uint8_t> voxels_near_fluid(const LabelGrid& grid, const Domain&
     const bool periodic = domain.periodic(axis);
     const std::size_t stride = axis == 0 ? 1 : axis == 1 ? grid.voxels[0] : grid.index(0, 0, 1);
     spread = near;
-    for (std::size_t k = 0; k < near.size(); ++k) {
-      const int at = static_cast<int>(k / stride % count);
-      if (!periodic && (at < reach || at >= count - reach)) spread[k] = 1;
-      if (!near[k]) continue;
-      const std::size_t line = k - at * stride;
-      for (int other = at - reach; other <= at + reach; ++other) {
-        if (!periodic && (other < 0 || other >= count)) continue;
-        spread[line + static_cast<std::size_t>((other % count + count) % count) * stride] = 1;
+    // Along a line, there and back: how many voxels ago was the last one?
+    const auto sweep = [&](std::size_t line, bool back) {
+      int ago = periodic ? reach + 1 : 0;
+      for (int step = periodic ? -reach : 0; step < count; ++step) {
+        const int at = ((back ? count - 1 - step : step) + count * (1 + reach / count)) % count;
+        const std::size_t voxel = line + static_cast<std::size_t>(at) * stride;
+        ago = near[voxel] ? 0 : ago + 1;
+        if (step >= 0 && ago <= reach) spread[voxel] = 1;
       }
-    }
+    };
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (k / stride % count == 0) sweep(k, false), sweep(k, true);
     near.swap(spread);
   }
   return near;
