@@ -267,6 +267,27 @@ def plot_square_channel(folder):
     return figure
 
 
+def plot_sloping_channel(folder):
+    """Velocity and stretching of chains along the channel, with its height."""
+    paths = sorted(glob.glob(os.path.join(folder, "sloping_channel_*_seed1.csv")))
+    if not paths:
+        sys.exit("%s: no run of sloping_channel" % folder)
+    figure, axes = plt.subplots(3, 1, figsize=(8, 8), constrained_layout=True, sharex=True)
+    for path in paths:
+        table = columns_of(path)
+        label = os.path.basename(path)[len("sloping_channel_"):-len("_seed1.csv")].replace("_", " ")
+        line, = axes[0].plot(table["x"], table["height"], label=label)
+        axes[1].plot(table["x"], table["velocity"], ".", markersize=4, color=line.get_color())
+        axes[1].plot(table["x"], table["theory"], linewidth=0.8, color=line.get_color())
+        axes[2].plot(table["x"], table["stretch_square"], linewidth=1, color=line.get_color())
+    axes[0].set_ylabel("height ($r_c$)")
+    axes[0].legend(fontsize=7)
+    axes[1].set_ylabel(r"velocity ($r_c/\tau$), lines: even density")
+    axes[2].set_ylabel(r"$\langle R_x^2\rangle$ of chains here ($r_c^2$)")
+    axes[2].set_xlabel("x ($r_c$), the flow goes to the right")
+    return figure
+
+
 def plot_structured_wall(folder):
     """Front and advancing angle over time of every driven run."""
     paths = sorted(path for path in glob.glob(os.path.join(folder, "structured_wall_*_seed*.csv")))
@@ -360,6 +381,7 @@ FIGURES = {
     "inner_flow": plot_inner_flow,
     "poiseuille": plot_poiseuille,
     "square_channel": plot_square_channel,
+    "sloping_channel": plot_sloping_channel,
     "structured_wall": plot_structured_wall,
     "infiltration": plot_infiltration,
 }
