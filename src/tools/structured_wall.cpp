@@ -36,6 +36,7 @@ engine::Parameters parameters_of(const StructuredWallRun& run) {
   domain.lower_side = {engine::Side::periodic, engine::Side::periodic, engine::Side::wall};
   domain.upper_side = {engine::Side::periodic, engine::Side::periodic, engine::Side::reflecting};
   if (run.spacing <= 0) return parameters;
+  if (run.bottom == GrooveBottom::bare) domain.lower_side[2] = engine::Side::reflecting;
   engine::LabelGrid grid = chip::grid_over(domain, {voxel, voxel, voxel});
   for (double x = 0; x < length - 0.5 * period; x += period) {
     chip::LabelShape ridge;

@@ -12,6 +12,12 @@ enum class DropletStart {
   disc     ///< touches with one point, as Yao's, and spreads
 };
 
+/// What lies under the grooves. Beads there draw liquid in that hangs within their range.
+enum class GrooveBottom {
+  beads,  ///< the plate goes on
+  bare    ///< nothing but what bounces liquid back: all that is solid are the ridges
+};
+
 /// A droplet in a thin slab, periodic along x and y, on a plate with ridges across x (Yao 2013): L wide, S
 /// apart, H high, so that the liquid on their tops touches the share f_s = L / (L + S) of the plane. After a
 /// rest a body force along x drives it.
@@ -23,6 +29,7 @@ struct StructuredWallRun {
   double length = 100;      ///< of the slab, r_c: the nearest whole number of ridges is taken
   double area = 400;        ///< of the droplet in the x-z plane, r_c^2: Yao's 7060 beads are 392
   DropletStart start = DropletStart::square;
+  GrooveBottom bottom = GrooveBottom::beads;
   double force = 0.0007;  ///< F_x on each bead, k_BT / r_c
   double settle = 150;    ///< tau until it is measured
   double rest = 150;      ///< tau of measuring at rest

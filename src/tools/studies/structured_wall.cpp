@@ -14,18 +14,20 @@ namespace {
 struct Droplet {
   std::string label;
   double attraction, spacing, force, drive;  ///< spacing 0: smooth
+  GrooveBottom bottom = GrooveBottom::bare;  ///< where Yao's droplets hang, ours do so only over these
 };
 
 constexpr double optimum_force = 0.0007;  // of figure 7
 
 /// Yao's f_s are those of ridges 4 wide, whole numbers apart: 3, 5, 9, 11 are 0.571, 0.444, 0.308, 0.267.
 std::vector<Droplet> droplets(bool quick, const engine::ContactAngleCurve& curve) {
-  const double drive = quick ? 20 : 600;  // Yao's: 5,000
+  const double drive = quick ? 20 : 300;  // Yao's: 5,000
   std::vector<Droplet> all;
   // Figure 4: static angles at f_s 0.444, beside those of the smooth wall in the same slab.
   for (const double attraction : {-11.0, -13.0, -15.0, -17.0})
     for (const double s : {0.0, 5.0})
       all.push_back({fmt::format("static A={:g} S={:g}", attraction, s), attraction, s, 0, 0});
+  all.push_back({"static A=-13 S=5 bottom", -13, 5, 0, 0, GrooveBottom::beads});
   // Figure 5: against the smooth wall, at two angles.
   for (const auto& [angle, spacing] : {std::pair{130.59, 5.0}, {67.84, 9.0}})
     for (const double s : {0.0, spacing})
@@ -36,6 +38,7 @@ std::vector<Droplet> droplets(bool quick, const engine::ContactAngleCurve& curve
     for (const double spacing : {3.0, 5.0, 9.0, 11.0, 13.0})
       all.push_back({fmt::format("optimum A={:g} S={:g}", attraction, spacing), attraction, spacing,
                      optimum_force, drive});
+  all.push_back({"optimum A=-13 S=11 bottom", -13, 11, optimum_force, drive, GrooveBottom::beads});
   return all;
 }
 
@@ -44,6 +47,7 @@ StructuredWallRun run_of(const StudyOptions& options, const Droplet& one, std::u
   run.attraction = one.attraction;
   run.spacing = one.spacing;
   run.start = DropletStart::disc;
+  run.bottom = one.bottom;
   run.force = one.force;
   run.drive = one.drive;
   run.length = one.drive > 0 ? 200 : 100;
@@ -61,7 +65,8 @@ Finding fastest_of(const std::vector<Droplet>& all, double attraction, const Res
   double fastest = -1e300, at = 0;
   bool complete = true;
   for (const Droplet& one : all) {
-    if (one.attraction != attraction || one.force != optimum_force) continue;
+    if (one.attraction != attraction || one.force != optimum_force || one.bottom != GrooveBottom::bare)
+      continue;
     complete = complete && !results.of(one.label, "velocity").empty();
     const double velocity = results.mean(one.label, "velocity").mean;
     if (!complete || velocity <= fastest) continue;
