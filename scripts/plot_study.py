@@ -267,6 +267,60 @@ def plot_square_channel(folder):
     return figure
 
 
+def plot_equation_of_state(folder):
+    """Pressure over density: of liquids with a theory, and of Liu's, whose loops a van der Waals curve is laid through."""
+    liquids, fits = {}, {}
+    for row in findings_of(folder, "equation_of_state"):
+        liquid, _, density = row["case"].partition(" rho=")
+        if not math.isfinite(row["mean"]):
+            continue
+        if density:
+            liquids.setdefault(liquid, []).append((float(density), row["mean"], row["theory"], row["paper"]))
+        else:
+            fits.setdefault(liquid, {})[row["quantity"]] = row["mean"]
+    figure, axes = plt.subplots(1, 3, figsize=(14, 4.4), constrained_layout=True)
+    for liquid, points in liquids.items():
+        place, pressure, theory, paper = np.array(points).T
+        axis = axes[2 if np.isfinite(paper).any() else 1 if liquid.startswith("spline") else 0]
+        line, = axis.plot(place, pressure, "o", markersize=4, label=liquid)
+        axis.plot(place, theory, linewidth=0.8, color=line.get_color())
+        axis.plot(place, paper, "--", linewidth=0.8, color=line.get_color())
+        if liquid.startswith("spline"):
+            a, b = fits[liquid]["van_der_waals_a"], fits[liquid]["van_der_waals_b"]
+            fine = np.linspace(place.min(), place.max(), 100)
+            axis.plot(fine, fine * float(liquid.rpartition("k_BT=")[2]) / (1 - b * fine) - a * fine ** 2,
+                      linewidth=0.8, color=line.get_color())
+    for axis, title in zip(axes, ("lines: Groot and Warren, Warren", "Liu's potential, lines: van der Waals fits",
+                                  "the same, weak; dashed: Liu's curve")):
+        axis.set_title(title, fontsize=9)
+        axis.set_xlabel("density ($r_c^{-3}$)")
+        axis.set_ylabel("pressure ($k_BT/r_c^3$)")
+        axis.legend(fontsize=7)
+        axis.grid(alpha=0.3)
+    return figure
+
+
+def plot_sloping_channel(folder):
+    """Velocity and stretching of chains along the channel, with its height."""
+    paths = sorted(glob.glob(os.path.join(folder, "sloping_channel_*_seed1.csv")))
+    if not paths:
+        sys.exit("%s: no run of sloping_channel" % folder)
+    figure, axes = plt.subplots(3, 1, figsize=(8, 8), constrained_layout=True, sharex=True)
+    for path in paths:
+        table = columns_of(path)
+        label = os.path.basename(path)[len("sloping_channel_"):-len("_seed1.csv")].replace("_", " ")
+        line, = axes[0].plot(table["x"], table["height"], label=label)
+        axes[1].plot(table["x"], table["velocity"], ".", markersize=4, color=line.get_color())
+        axes[1].plot(table["x"], table["theory"], linewidth=0.8, color=line.get_color())
+        axes[2].plot(table["x"], table["stretch_square"], linewidth=1, color=line.get_color())
+    axes[0].set_ylabel("height ($r_c$)")
+    axes[0].legend(fontsize=7)
+    axes[1].set_ylabel(r"velocity ($r_c/\tau$), lines: even density")
+    axes[2].set_ylabel(r"$\langle R_x^2\rangle$ of chains here ($r_c^2$)")
+    axes[2].set_xlabel("x ($r_c$), the flow goes to the right")
+    return figure
+
+
 def plot_structured_wall(folder):
     """Front and advancing angle over time of every driven run."""
     paths = sorted(path for path in glob.glob(os.path.join(folder, "structured_wall_*_seed*.csv")))
@@ -356,10 +410,12 @@ def plot_findings(folder, name):
 
 
 FIGURES = {
+    "equation_of_state": plot_equation_of_state,
     "forces": plot_forces,
     "inner_flow": plot_inner_flow,
     "poiseuille": plot_poiseuille,
     "square_channel": plot_square_channel,
+    "sloping_channel": plot_sloping_channel,
     "structured_wall": plot_structured_wall,
     "infiltration": plot_infiltration,
 }

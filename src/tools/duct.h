@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/parameters.h"
+#include "chip/scene.h"
 
 namespace dmf::tools {
 
@@ -13,18 +13,16 @@ double duct_velocity(double y, double z, double half_y, double half_z);
 /// Its mean over the section.
 double mean_duct_velocity(double half_y, double half_z);
 
-/// Plain DPD driven along a square channel of solid voxels (Chen 2010, 3.1): 30 x 20 x 20 r_c, rho 4,
-/// a 18.75, s 1/2, gamma 4.5, g 0.1 by default.
+/// Liquid driven along a square channel of solid voxels (Chen 2010, 3.1: scene square_channel).
+/// Single-threaded; reduced units.
 struct DuctRun {
+  chip::Scene scene;  ///< filled; the channel's axis is x, along which gravity acts
   std::uint64_t seed = 1;
-  double time_step = 0.01;
-  double wall_repulsion = 9.68;  ///< a of fluid and wall, k_BT / r_c
-  bool wall_friction = true;     ///< of fluid and wall; without it nothing but bouncing back holds the fluid
-  double acceleration = 0.1;     ///< r_c / tau^2
-  double length = 30;            ///< of the period along the channel, r_c
-  double half_width = 10;        ///< r_c, a multiple of 1/2
-  double settle = 150;           ///< tau before measuring
-  double measure = 100;          ///< tau
+  double settle = 150;   ///< tau before measuring
+  double measure = 100;  ///< tau
+
+  double acceleration() const { return scene.body_forces.gravity.x(); }  ///< r_c / tau^2
+  double half_width() const;                                             ///< of the fluid, r_c
 };
 
 struct DuctResult {
@@ -35,15 +33,17 @@ struct DuctResult {
       0;                 ///< half width at which the fitted profile vanishes, r_c: the channel's without slip
   double deviation = 0;  ///< root mean square, from the fit, of the largest velocity
   double densest = 0;    ///< of the cells next to a wall, over the mean
-  int cells = 0;         ///< of the section, along each side
+  double half_width = 0;                  ///< of the fluid, r_c
+  int cells = 0;                          ///< of the section, along each side
   std::vector<double> velocity, density;  ///< by cell, y fastest
-  double middle(int cell, double half_width) const {
-    return (cell + 0.5) * 2 * half_width / cells - half_width;
-  }
+  double middle(int cell) const { return (cell + 0.5) * 2 * half_width / cells - half_width; }
 };
 
-/// Domain and solid of such a channel.
-void lay_duct(const DuctRun& run, engine::Parameters& parameters);
+/// Domain and solid of such a channel, of walls of four beads per r_c^3. @param half_width  a multiple of
+/// 1/2.
+void lay_duct(double length, double half_width, engine::Parameters& parameters);
+/// The same of a scene that one liquid fills.
+void lay_duct(double length, double half_width, chip::Scene& scene);
 
 /// @throws engine::Instability.
 DuctResult run_duct(const DuctRun& run);

@@ -29,6 +29,7 @@ Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
   if (how.list_skin > 0) parameters.list_skin = how.list_skin;
   parameters.seed = how.seed;
   parameters.liquid = how.liquid;
+  parameters.spline = how.spline;
   return parameters;
 }
 
@@ -134,10 +135,11 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
 
 BulkResult run_bulk(const LiquidRun& how) {
   // A whole number of lattice cells at the liquid's own density.
-  const double size = 14 * std::cbrt(4 / how.liquid.bulk_density);
+  const double size = how.bulk_cells * std::cbrt(4 / how.liquid.bulk_density);
   // A whole number of steps, about 0.1 tau.
   const double interval = how.time_step * std::max(1.0, std::round(0.1 / how.time_step));
   Parameters parameters = periodic_box(how, Vector3d::Constant(size));
+  parameters.watchdog.evaporation = 1;  // where liquid and gas part, nothing is wrong
   Simulation simulation(parameters, no_wall(), {1, "auto"});
   const double density = static_cast<double>(simulation.fill_box()) / (size * size * size);
   constexpr int modes = 12;  // 3 wave vectors, 2 transverse directions, sine and cosine

@@ -15,6 +15,8 @@ struct LiquidRun {
   double list_skin = 0;  ///< r_c; 0: the engine's default
   double measure = 0;    ///< tau of measuring; 0: as long as `quick` says
   engine::LiquidParameters liquid{};
+  engine::SplineParameters spline{};  ///< Liu's conservative force in place of the liquid's own
+  int bulk_cells = 14;                ///< of the lattice along each side of the bulk's box, four beads each
 };
 
 struct FilmResult {

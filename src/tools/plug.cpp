@@ -20,11 +20,8 @@ engine::Parameters parameters_of(const PlugRun& run) {
   engine::Parameters parameters = immiscible_liquids(run.carrier_wall_repulsion);
   const bool square = run.walls == ChannelWalls::square;
   if (square) {
-    DuctRun duct;
-    duct.length = run.length;
-    duct.half_width = run.half_gap;
-    duct.wall_repulsion = run.wall_repulsion;
-    lay_duct(duct, parameters);
+    lay_duct(run.length, run.half_gap, parameters);
+    parameters.label_grid.attraction = run.wall_repulsion;
   } else {
     using engine::Side;
     parameters.domain.lower = {0, -run.width / 2, -run.half_gap};

@@ -18,6 +18,7 @@ constexpr double pi = 3.14159265358979323846, degree = pi / 180;
 constexpr double slab = 3.5;            ///< r_c; Yao's is 3, the least that a periodic side may be is 3.15
 constexpr double ceiling = 50;          ///< above the ridges, r_c
 constexpr double voxel = 0.5;           ///< r_c
+constexpr double clearance = 0.3;       ///< of the droplet over the tops when it is placed, r_c
 constexpr double front_layer = 1.5;     ///< above the tops, where the front is looked for, r_c
 constexpr std::uint32_t interval = 20;  ///< steps between two looks
 
@@ -35,6 +36,7 @@ engine::Parameters parameters_of(const StructuredWallRun& run) {
   domain.lower_side = {engine::Side::periodic, engine::Side::periodic, engine::Side::wall};
   domain.upper_side = {engine::Side::periodic, engine::Side::periodic, engine::Side::reflecting};
   if (run.spacing <= 0) return parameters;
+  if (run.bottom == GrooveBottom::bare) domain.lower_side[2] = engine::Side::reflecting;
   engine::LabelGrid grid = chip::grid_over(domain, {voxel, voxel, voxel});
   for (double x = 0; x < length - 0.5 * period; x += period) {
     chip::LabelShape ridge;
@@ -98,6 +100,24 @@ double sunk_share(const engine::Snapshot& snapshot, const StructuredWallRun& run
   return grooves > 0 ? below / (run.parameters.liquid.bulk_density * grooves) : 0;
 }
 
+/// Over the tops: a square, or a disc of layers of liquid one lattice constant thick.
+void place_droplet(const StructuredWallRun& run, double middle, engine::Simulation& simulation) {
+  const double lowest = run.top() + clearance;
+  if (run.start == DropletStart::square) {
+    const double side = std::sqrt(run.area);
+    simulation.fill_slab({middle - 0.5 * side, 0, lowest}, {middle + 0.5 * side, slab, lowest + side});
+    return;
+  }
+  const double radius = std::sqrt(run.area / pi);
+  const double layer = std::cbrt(4 / run.parameters.liquid.initial_density);
+  const int layers = static_cast<int>(std::lround(2 * radius / layer));
+  for (int k = 0; k < layers; ++k) {
+    const double from_centre = (k + 0.5) * layer - 0.5 * layers * layer;
+    const double half = std::sqrt(radius * radius - from_centre * from_centre), bottom = lowest + k * layer;
+    simulation.fill({{middle - half, 0, bottom}, {middle + half, slab, bottom + layer}});
+  }
+}
+
 }  // namespace
 
 double cassie_baxter_angle(double solid_fraction, double angle) {
@@ -112,8 +132,7 @@ StructuredWallResult run_structured_wall(const StructuredWallRun& run,
   engine::Simulation simulation(parameters, uncalibrated(), {1, "auto"});
   const double shown = uncalibrated_angle(run.attraction);
   simulation.set_wettability([shown](double, double) { return shown; });
-  const double side = std::sqrt(run.area), middle = 0.5 * length;
-  simulation.fill_slab({middle - 0.5 * side, 0, top + 0.3}, {middle + 0.5 * side, slab, top + 0.3 + side});
+  place_droplet(run, 0.5 * length, simulation);
 
   const double dt = parameters.time_step;
   const auto looks_of = [dt](double time) { return static_cast<int>(std::lround(time / (dt * interval))); };

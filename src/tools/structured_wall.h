@@ -6,6 +6,18 @@
 
 namespace dmf::tools {
 
+/// What a droplet is when it is placed. It tends to keep to the ridges that it has come to lie on.
+enum class DropletStart {
+  square,  ///< lies on its whole side, and pulls back
+  disc     ///< touches with one point, as Yao's, and spreads
+};
+
+/// What lies under the grooves. Beads there draw liquid in that hangs within their range.
+enum class GrooveBottom {
+  beads,  ///< the plate goes on
+  bare    ///< nothing but what bounces liquid back: all that is solid are the ridges
+};
+
 /// A droplet in a thin slab, periodic along x and y, on a plate with ridges across x (Yao 2013): L wide, S
 /// apart, H high, so that the liquid on their tops touches the share f_s = L / (L + S) of the plane. After a
 /// rest a body force along x drives it.
@@ -16,10 +28,12 @@ struct StructuredWallRun {
   double height = 1;        ///< H, r_c
   double length = 100;      ///< of the slab, r_c: the nearest whole number of ridges is taken
   double area = 400;        ///< of the droplet in the x-z plane, r_c^2: Yao's 7060 beads are 392
-  double force = 0.0007;    ///< F_x on each bead, k_BT / r_c
-  double settle = 150;      ///< tau until it is measured
-  double rest = 150;        ///< tau of measuring at rest
-  double drive = 0;         ///< tau with the force
+  DropletStart start = DropletStart::square;
+  GrooveBottom bottom = GrooveBottom::beads;
+  double force = 0.0007;  ///< F_x on each bead, k_BT / r_c
+  double settle = 150;    ///< tau until it is measured
+  double rest = 150;      ///< tau of measuring at rest
+  double drive = 0;       ///< tau with the force
   std::uint64_t seed = 1;
   engine::Parameters parameters{};  ///< liquid and time step; the domain is laid around the droplet
 

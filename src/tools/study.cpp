@@ -112,6 +112,8 @@ const std::vector<Study>& all_studies() {
         {"infiltration", "liquid that goes into a slit or between grains, by itself or pushed",
          study_infiltration},
         {"chain", "chains: random walks, relaxation, good solvent, pulled, in a channel", study_chain},
+        {"sloping_channel", "chains in a flow through a channel that narrows: what stretches them",
+         study_sloping_channel},
         {"membrane", "membranes: what they keep, what leaks, a deflated sphere, a red cell", study_membrane},
         {"constriction", "a red cell goes through a throat: shape, area, volume, what leaks",
          study_constriction},

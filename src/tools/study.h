@@ -95,6 +95,8 @@ Findings study_structured_wall(const StudyOptions& options);
 Findings study_infiltration(const StudyOptions& options);
 /// Chains: random walks, Rouse's time, good solvent, force and extension, in a channel (Liu 3.4, 4.3).
 Findings study_chain(const StudyOptions& options);
+/// Chains that a flow drives through a channel that narrows, over the slope of its walls (Liu 4.3).
+Findings study_sloping_channel(const StudyOptions& options);
 /// Membranes: what they keep and what leaks, red cell, deflated sphere (Liu 4.4).
 Findings study_membrane(const StudyOptions& options);
 /// A red cell that a flow drives through a throat (Liu 4.4).

@@ -31,12 +31,22 @@ StructuredWallRun small_droplet(double spacing) {
 TEST(StructuredWall, RidgesMakeAHydrophobicWallMoreHydrophobic) {
   const StructuredWallResult smooth = run_structured_wall(small_droplet(0));
   const StructuredWallResult ridges = run_structured_wall(small_droplet(3));
-  // A droplet of 4.5 r_c shows more than one of 10 on the same wall, as far as the liquid keeps off it: what it
-  // shows there is what Cassie and Baxter's law begins with.
+  // A droplet of 4.5 r_c shows more than one of 10 on the same wall, as far as the liquid keeps off it: what
+  // it shows there is what Cassie and Baxter's law begins with.
   EXPECT_GT(smooth.angle, 132);
   EXPECT_GT(ridges.angle, smooth.angle + 5);
   EXPECT_NEAR(ridges.angle, cassie_baxter_angle(2.0 / 5, smooth.angle), 4);
   EXPECT_LT(ridges.sunk, 0.5);  // it hangs over the grooves
+}
+
+TEST(StructuredWall, TheBottomOfTheGroovesDrawsInLiquidThatHangsOverBareOnes) {
+  StructuredWallRun run = small_droplet(3);
+  run.settle = run.rest = 15;
+  const double over_beads = run_structured_wall(run).sunk;
+  run.bottom = GrooveBottom::bare;
+  const double over_nothing = run_structured_wall(run).sunk;
+  EXPECT_LT(over_nothing, 0.1);
+  EXPECT_GT(over_beads, over_nothing + 0.1);
 }
 
 InfiltrationRun small_slit(double angle) {

@@ -13,12 +13,10 @@ const std::vector<double> repulsions{9.68, 18};  // of fluid and wall: the ends 
 std::string label_of(double repulsion) { return fmt::format("a_AW={:g}", repulsion); }
 
 DuctRun duct_run(const StudyOptions& options, double repulsion, std::uint64_t seed) {
-  DuctRun run;
-  run.seed = seed;
-  run.time_step = options.time_step_or(run.time_step);
-  run.wall_repulsion = repulsion;
+  DuctRun run{scene_for(options, "square_channel"), seed};
+  run.scene.parameters.label_grid.attraction = repulsion;
   if (options.quick) {
-    run.length = 6;
+    lay_duct(6, run.half_width(), run.scene);
     run.settle = 40;
     run.measure = 10;
   }
@@ -26,14 +24,14 @@ DuctRun duct_run(const StudyOptions& options, double repulsion, std::uint64_t se
 }
 
 void write_profile(const StudyOptions& options, const DuctRun& run, const DuctResult& result) {
-  std::ofstream csv(
-      fmt::format("{}/square_channel_a{:g}_seed{}.csv", options.output, run.wall_repulsion, run.seed));
+  std::ofstream csv(fmt::format("{}/square_channel_a{:g}_seed{}.csv", options.output,
+                                run.scene.parameters.label_grid.attraction.value(), run.seed));
   csv << "y,z,velocity,theory,density\n";
-  const double strength = 4 * run.acceleration / result.viscosity;
+  const double strength = 4 * run.acceleration() / result.viscosity;
   for (int z = 0; z < result.cells; ++z)
     for (int y = 0; y < result.cells; ++y) {
       const std::size_t cell = static_cast<std::size_t>(z) * result.cells + y;
-      const double at_y = result.middle(y, run.half_width), at_z = result.middle(z, run.half_width);
+      const double at_y = result.middle(y), at_z = result.middle(z);
       csv << fmt::format("{},{},{:.6g},{:.6g},{:.6g}\n", at_y, at_z, result.velocity[cell],
                          strength * duct_velocity(at_y, at_z, result.fitted_width, result.fitted_width),
                          result.density[cell]);
