@@ -27,9 +27,12 @@ cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Fuzz -DCMAKE_CXX_COMPILER=clang+
 cmake --build "$build" -j "${JOBS:-$(nproc)}" --target "${targets[@]/#/fuzz_}" |
   { grep -v 'Built target' || true; } || die "the build failed"
 
-# Of the seeds outside the corpus the shipped files.
+# Of the seeds outside the corpus the shipped files. Scenes with large label grids take ten seconds each here: the corpus has a
+# small one.
+mkdir -p "$build/seeds"
+grep -L '^label_grid:' "$root"/config/scenes/*.yaml "$root"/test/scenes/*.yaml | xargs cp -t "$build/seeds"
 declare -A seeds=(
-  [scene]="$root/config/scenes $root/test/scenes" [protocol]="$root/config/protocols $root/test/protocols"
+  [scene]="$build/seeds" [protocol]="$root/config/protocols $root/test/protocols"
   [purpledrop]="" [microdrop]="" [svg_path]="" [command]="" [checkpoint]="")
 export DMF_SIM_CONFIG="$root/config" OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=1
 status=0
