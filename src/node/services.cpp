@@ -85,7 +85,9 @@ bool Services::load_pattern(dmf_sim::LoadPattern::Request& request,
 
 bool Services::dispense_droplet(dmf_sim::DispenseDroplet::Request& request,
                                 dmf_sim::DispenseDroplet::Response& response) {
-  copy(engine_.apply(chip::DispenseDroplet{request.x, request.y, request.volume, request.fills, request.species}), response);
+  copy(engine_.apply(
+           chip::DispenseDroplet{request.x, request.y, request.volume, request.fills, request.species}),
+       response);
   return true;
 }
 
