@@ -24,6 +24,7 @@
 
 #include "chip/scene.h"
 #include "node/frame.h"
+#include "node/process_memory.h"
 
 /// Between the chip's plain values and ROS messages: pure functions, no node needed. SI units, except in
 /// fields that end in _mdpd; what is only looked at (particles, transforms, markers) is scaled up by the
@@ -94,5 +95,7 @@ std::string clock_conflict(const std::vector<std::string>& others);
 /// ERROR while there are any.
 diagnostic_msgs::DiagnosticStatus clock_status(const std::vector<std::string>& others,
                                                const ConversionContext& context);
+/// What the node takes, for whoever leaves it running for days; always OK.
+diagnostic_msgs::DiagnosticStatus memory_status(const MemoryUse& memory, const ConversionContext& context);
 
 }  // namespace dmf::node

@@ -218,4 +218,16 @@ diagnostic_msgs::DiagnosticStatus clock_status(const std::vector<std::string>& o
   return clock;
 }
 
+diagnostic_msgs::DiagnosticStatus memory_status(const MemoryUse& memory, const ConversionContext& context) {
+  diagnostic_msgs::DiagnosticStatus status;
+  status.name = "chip: memory";
+  status.hardware_id = "dmf_sim " + context.scene.name;
+  status.level = diagnostic_msgs::DiagnosticStatus::OK;
+  status.message = fmt::format("{:.1f} MB in use", memory.in_use);
+  status.values = {value("in use (MB)", fmt::format("{:.4f}", memory.in_use)),
+                   value("kept free (MB)", fmt::format("{:.4f}", memory.kept)),
+                   value("resident (MB)", fmt::format("{:.4f}", memory.resident))};
+  return status;
+}
+
 }  // namespace dmf::node

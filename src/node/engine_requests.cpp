@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "node/engine_thread.h"
-#include "node/memory_limit.h"
+#include "node/process_memory.h"
 
 // What others ask of the engine thread. Each request runs on it, between two steps.
 

@@ -8,9 +8,9 @@
 
 #include "chip/scene.h"
 #include "engine/wait_policy.h"
-#include "node/memory_limit.h"
 #include "node/node.h"
 #include "node/options.h"
+#include "node/process_memory.h"
 
 namespace {
 
@@ -31,6 +31,7 @@ void note_signals() {
 
 int main(int argc, char** argv) {
   dmf::engine::prefer_short_spinning(argv);
+  dmf::node::give_freed_memory_back();
   ros::init(argc, argv, "chip", ros::init_options::NoSigintHandler);
   note_signals();
   try {

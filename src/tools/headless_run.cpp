@@ -161,6 +161,7 @@ RunResult headless_run(const RunOptions& options) {
 
   const SignalsNoted signals;
   double temperature_sum = 0, looks = 0, bead_steps = 0;
+  std::uint64_t looked = from;
   const auto start = Clock::now();
   {
     Progress progress(from, to, options.quiet);
@@ -171,7 +172,8 @@ RunResult headless_run(const RunOptions& options) {
         const auto snapshot = experiment.observe();
         temperature_sum += snapshot->temperature;
         looks += 1;
-        bead_steps += static_cast<double>(snapshot->moving_beads) * static_cast<double>(look);
+        bead_steps += static_cast<double>(snapshot->moving_beads) * static_cast<double>(step - looked);
+        looked = step;
         log.write(*snapshot, scene.units);
         progress.show(step);
       }

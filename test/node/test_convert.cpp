@@ -317,5 +317,15 @@ TEST_F(ConvertTest, DiagnosticsTellSoundWarmAndHalted) {
   EXPECT_NE(halted.message.find("bead 3"), std::string::npos);
 }
 
+TEST_F(ConvertTest, DiagnosticsTellWhatTheNodeTakes) {
+  const auto memory = memory_status({1.5, 0.25, 20}, context_);
+  EXPECT_EQ(memory.level, diagnostic_msgs::DiagnosticStatus::OK);
+  ASSERT_EQ(memory.values.size(), 3u);
+  EXPECT_EQ(memory.values[0].key, "in use (MB)");
+  EXPECT_DOUBLE_EQ(std::stod(memory.values[0].value), 1.5);
+  EXPECT_DOUBLE_EQ(std::stod(memory.values[1].value), 0.25);
+  EXPECT_DOUBLE_EQ(std::stod(memory.values[2].value), 20);
+}
+
 }  // namespace
 }  // namespace dmf::node

@@ -187,7 +187,9 @@ TEST(HeadlessRun, JsonHasTheKeysThatScriptsRelyOn) {
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["steps"], 20);
   EXPECT_EQ(json["beads"], result.beads);
-  EXPECT_GT(result.beads, 0u);
+  ASSERT_GT(result.beads, 0u);
+  const double bead_steps = 20.0 * static_cast<double>(result.beads);  // fewer than between two looks
+  EXPECT_NEAR(json["ns_per_bead_step"].get<double>() * bead_steps / (result.wall_s * 1e9), 1, 1e-9);
 }
 
 TEST(HeadlessRun, WritesALineADropletAndLook) {

@@ -1,9 +1,10 @@
-#include "node/memory_limit.h"
+#include "node/process_memory.h"
 
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <fstream>
 
 namespace dmf::node {
@@ -21,6 +22,24 @@ void limit_memory([[maybe_unused]] double megabytes) {
 #endif
 }
 
+void give_freed_memory_back() {
+  constexpr int kAtMost = 128 * 1024;  // bytes: glibc's own default, but fixed
+  ::mallopt(M_TRIM_THRESHOLD, kAtMost);
+}
+
 void release_memory() { ::malloc_trim(0); }
+
+MemoryUse memory_use() {
+#if __GLIBC_PREREQ(2, 33)
+  const struct mallinfo2 heap = ::mallinfo2();
+#else
+  const struct mallinfo heap = ::mallinfo();
+#endif
+  const auto megabytes = [](auto bytes) { return static_cast<double>(bytes) * 1e-6; };
+  std::size_t pages = 0, resident_pages = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident_pages;
+  return {megabytes(heap.uordblks) + megabytes(heap.hblkhd), megabytes(heap.fordblks),
+          megabytes(resident_pages) * static_cast<double>(::sysconf(_SC_PAGESIZE))};
+}
 
 }  // namespace dmf::node
