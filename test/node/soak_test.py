@@ -24,6 +24,9 @@ from chip_client import Chip, Listener, memory_of, pid_of  # noqa: E402
 
 COMMANDS_A_RUN = 300
 FLAT_IN_USE, FLAT_RESIDENT = 0.1, 1.0  # MB an hour
+# MB that count as in use and are not: malloc keeps up to 7 blocks of each of 64 sizes, 0.23 MB, at hand for every thread, and
+# threads come across the rarer sizes in the first quarter of an hour. Of some twenty threads two allocate much.
+CACHES = 0.46
 
 
 def slope_of(points):
@@ -101,11 +104,14 @@ class SoakTest(unittest.TestCase):
             resident.append((hours, memory_of(pid)))
         print(f"{seconds} s, {len(used)} runs, {taken} commands taken, peak {memory_of(pid, 'VmHWM'):.1f} MB; within a run "
               f"{sum(within) / taken * 1e3:.2f} kB a command")
-        used_slope, used_error = report("in use", used)
+        report("in use", used)
+        used_slope, used_error = report("in use, second half", used[len(used) // 2:])
         resident_slope, resident_error = report("resident", resident)
-        self.assertLess(used_slope, FLAT_IN_USE + 3 * used_error)
-        self.assertLess(resident_slope, FLAT_RESIDENT + 3 * resident_error)
-        self.assertLess(resident[-1][1] - resident[0][1], 5)
+        self.assertLess(used[-1][1] - used[0][1], CACHES)
+        self.assertLess(resident[-1][1] - resident[0][1], 2)
+        if seconds >= 1800:  # caches are full by then
+            self.assertLess(used_slope, FLAT_IN_USE + 3 * used_error)
+            self.assertLess(resident_slope, FLAT_RESIDENT + 3 * resident_error)
 
 
 if __name__ == "__main__":
