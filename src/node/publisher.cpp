@@ -94,7 +94,6 @@ void Publisher::publish(const Outbox::Delivery& delivery) {
     ROS_ERROR("%zu commands and events were lost: nothing took them",
               static_cast<std::size_t>(delivery.lost));
   for (const CommandNote& command : delivery.commands) publish_command(command);
-  if (delivery.frame) forget_before(delivery.frame->run);
   for (const StateHashNote& hash : delivery.hashes) run_record_.publish(to_run_record(hash, context_));
   for (const EventNote& event : delivery.events) events_.publish(to_event(event, context_));
   if (delivery.frame) publish_frame(*delivery.frame);
@@ -111,15 +110,10 @@ void Publisher::publish_clock(std::uint64_t nanoseconds) {
 void Publisher::publish_command(const CommandNote& note) {
   const dmf_sim::Command message = to_command(note, context_);
   run_record_.add(message);
-  forget_before(message.run);
   const std::lock_guard lock(history_mutex_);
+  if (!history_.empty() && history_.back().run != message.run) history_.clear();
   history_.push_back(message);
   commands_.publish(message);
-}
-
-void Publisher::forget_before(std::uint32_t run) {
-  const std::lock_guard lock(history_mutex_);
-  if (!history_.empty() && history_.back().run < run) history_.clear();
 }
 
 void Publisher::replay_commands(const ros::SingleSubscriberPublisher& subscriber) {

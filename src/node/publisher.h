@@ -41,7 +41,6 @@ class Publisher {
   void publish(const Outbox::Delivery& delivery);
   void publish_clock(std::uint64_t nanoseconds);
   void publish_command(const CommandNote& note);
-  void forget_before(std::uint32_t run);  ///< commands of older runs
   void publish_frame(const Frame& frame);
   void publish_electrodes(const Frame& frame);
   void publish_transforms(const Frame& frame);
