@@ -140,8 +140,13 @@ class RunTest(unittest.TestCase):
 
     def test_diagnostics_are_well(self):
         report = Listener("/diagnostics", DiagnosticArray).wait()
-        self.assertEqual([s.level for s in report.status], [DiagnosticStatus.OK] * 4, report)
-        self.assertEqual(report.status[0].name, "chip: engine")
+        self.assertEqual([s.name for s in report.status], ["chip: " + part for part in (
+            "engine", "high voltage", "checkpoints", "clock", "memory")])
+        self.assertEqual({s.level for s in report.status}, {DiagnosticStatus.OK}, report)
+        memory = {v.key: float(v.value) for v in report.status[4].values}
+        # What malloc has in use can't be more than what the system has given.
+        self.assertGreater(memory["in use (MB)"], 0)
+        self.assertLess(memory["in use (MB)"], memory["resident (MB)"])
 
 
 if __name__ == "__main__":
