@@ -4,8 +4,9 @@
 A run keeps its history of commands, so that it can be simulated again: what it takes grows with every command until a
 reset. The chip is therefore reset now and then, and memory is compared at the same place of every run, just after
 the reset: what malloc says is in use, which grows when something is kept that nobody needs, and what is resident, which
-also grows when freed memory lies in pieces. A line is fitted to each by least squares, and its slope has to be zero within
-what it scatters, or so small that a year would not fill a machine.
+also grows when freed memory lies in pieces. Neither may grow by more than malloc's caches explain. In half an hour and more a
+line is fitted to each by least squares, and its slope has to be zero within what it scatters, or so small that a year would not
+fill a machine.
 """
 import math
 import random

@@ -9,8 +9,6 @@
 namespace dmf::node {
 namespace {
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they bring a malloc of their own
-
 using Block = std::vector<char>;
 
 /// In a thread, which has a heap of its own, as the node's threads do.
@@ -56,8 +54,6 @@ TEST(ProcessMemory, WhatWasFreedInTheMiddleIsGivenBackOnRequest) {
     EXPECT_NEAR(memory_use().resident - before, 10, 1);
   });
 }
-
-#endif
 
 }  // namespace
 }  // namespace dmf::node
