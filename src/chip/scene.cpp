@@ -99,6 +99,7 @@ Scene read_scene(SceneFiles files) {
   scene.description = root.text("description", "");
 
   scene.parameters.liquid = read_liquid(root);  // the units are matched with it
+  scene.parameters.microparticles = read_microparticle_model(root);
   read_mixture(root, scene.parameters);
   scene.board = read_board(root, scene);  // and a board's size decides about one r_c
   scene.units = read_units(root, scene.parameters.liquid, scene.board);

@@ -74,6 +74,8 @@ engine::WatchdogParameters read_watchdog(const YamlReader& root) {
   return watchdog;
 }
 
+}  // namespace
+
 engine::MicroparticleParameters read_microparticle_model(const YamlReader& root) {
   engine::MicroparticleParameters model;
   const auto section = root.optional_mapping("microparticle_model");
@@ -91,8 +93,6 @@ engine::MicroparticleParameters read_microparticle_model(const YamlReader& root)
   model.counted_by_liquid = section->boolean("counted_by_liquid", model.counted_by_liquid);
   return model;
 }
-
-}  // namespace
 
 LiquidParameters read_liquid(const YamlReader& root) {
   LiquidParameters liquid;
@@ -146,7 +146,6 @@ void read_engine(const YamlReader& root, engine::Parameters& parameters,
   }
   parameters.domain = read_domain(root, board);
   read_boundaries(root, parameters);
-  parameters.microparticles = read_microparticle_model(root);
   parameters.seed = root.integer("seed", 0, std::numeric_limits<std::uint64_t>::max(), parameters.seed);
   parameters.time_step = root.quantity("time_step", Dimension::time, {}, parameters.time_step);
   parameters.integrator = root.choice("integrator", {"groot_warren", "baoab"}, "groot_warren") == "baoab"

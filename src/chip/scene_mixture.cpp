@@ -14,11 +14,11 @@ namespace {
 constexpr std::size_t kMaxFills = 1000;
 
 /// The engine checks the ranges.
-engine::PairCoefficients read_coefficients(const YamlReader& section,
-                                           const engine::LiquidParameters& liquid) {
+engine::PairCoefficients read_coefficients(const YamlReader& section, const engine::LiquidParameters& liquid,
+                                           double usual_repulsion) {
   engine::PairCoefficients pair;
   pair.attraction = section.number("attraction", {});
-  pair.repulsion = section.number("repulsion", {}, liquid.repulsion);
+  pair.repulsion = section.number("repulsion", {}, usual_repulsion);
   pair.random_amplitude = section.number("random_amplitude", {}, liquid.random_amplitude);
   return pair;
 }
@@ -43,7 +43,7 @@ void read_mixture(const YamlReader& root, engine::Parameters& parameters) {
       const YamlReader one = section->mapping(name);
       engine::FurtherLiquid further;
       further.name = name;
-      further.own = read_coefficients(one, liquid);
+      further.own = read_coefficients(one, liquid, liquid.repulsion);
       further.initial_density = one.number("initial_density", {}, liquid.initial_density);
       further.bulk_density = one.number("bulk_density", {}, liquid.bulk_density);
       mixture.liquids.push_back(std::move(further));
@@ -52,8 +52,15 @@ void read_mixture(const YamlReader& root, engine::Parameters& parameters) {
   if (const auto table = root.optional_mapping("pairs")) {
     for (const std::string& first : table->keys()) {
       const YamlReader row = table->mapping(first);
-      for (const std::string& second : row.keys())
-        mixture.pairs.push_back({first, second, read_coefficients(row.mapping(second), liquid)});
+      for (const std::string& second : row.keys()) {
+        const bool on_microparticles =
+            first == engine::microparticle_name || second == engine::microparticle_name;
+        mixture.pairs.push_back(
+            {first, second,
+             read_coefficients(
+                 row.mapping(second), liquid,
+                 on_microparticles ? parameters.microparticles.liquid_repulsion : liquid.repulsion)});
+      }
     }
   }
   read_spline(root, parameters.spline);

@@ -31,13 +31,15 @@ bool attempt(const engine::YamlReader& reader, const std::string& key, const Act
 /// throw; docs/scene_format.md lists the keys. A section may use what the ones before it have read.
 
 engine::LiquidParameters read_liquid(const engine::YamlReader& root);
+/// What microparticles share.
+engine::MicroparticleParameters read_microparticle_model(const engine::YamlReader& root);
 /// `chip.file`: the board file that the scene names, if it does; a path counts from the scene's own file.
 /// After noting that it can't be had: a stand-in without electrodes.
 std::optional<SceneBoard> read_board(const engine::YamlReader& root, Scene& scene);
 /// `units`: by default those of water whose r_c is 10 um, or what the board's resolution makes of it.
 engine::Units read_units(const engine::YamlReader& root, const engine::LiquidParameters& liquid,
                          const std::optional<SceneBoard>& board);
-/// Wall, domain, what microparticles share and how to compute; then checks every range of the engine. A board
+/// Wall, domain and how to compute; then checks every range of the engine. A board
 /// has a domain of its own.
 void read_engine(const engine::YamlReader& root, engine::Parameters& parameters,
                  const std::optional<SceneBoard>& board);

@@ -28,6 +28,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
   constants_.laws = pair_table(parameters);
   constants_.spline = spline_shape(parameters.spline);
   rows_ = law_rows(constants_.laws, parameters);
+  microparticle_row_ = microparticle_row(constants_.laws, parameters);
   constants_.bodies.count_liquid = parameters.microparticles.counts_liquid;
   constants_.bodies.counted_by_liquid = parameters.microparticles.counted_by_liquid;
   constants_.density_normalization =
@@ -49,6 +50,7 @@ Forces::Forces(const Parameters& parameters, const std::string& kernel)
 PairPass Forces::pass_over(Beads& beads, const Walls& wall, Microparticles& bodies) const {
   PairPass pass = constants_;
   pass.rows = rows_.data();
+  pass.bodies.row = rows_.empty() ? nullptr : &microparticle_row_;
   pass.position = beads.position.data();
   pass.predicted = beads.predicted.data();
   pass.force = beads.force.data();

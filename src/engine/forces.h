@@ -37,6 +37,7 @@ class Forces {
   std::string kernel_name_;
   PairPass constants_;
   AlignedVector<LawRow> rows_;  ///< of a mixture
+  MicroparticleRow microparticle_row_;
   FrozenParticles frozen_particles_;
 };
 

@@ -24,7 +24,8 @@ bool within(double value, double lower, double upper) { return value >= lower &&
 
 /// Unordered.
 using NamePair = std::pair<std::string, std::string>;
-NamePair name_pair(const PairOfSpecies& pair) { return std::minmax(pair.first, pair.second); }
+NamePair name_pair(const std::string& one, const std::string& other) { return std::minmax(one, other); }
+NamePair name_pair(const PairOfSpecies& pair) { return name_pair(pair.first, pair.second); }
 
 bool same(const PairCoefficients& a, const PairCoefficients& b) {
   return a.attraction == b.attraction && a.repulsion == b.repulsion &&
@@ -51,7 +52,7 @@ void check_liquids(const Parameters& parameters, std::vector<std::string>& found
   if (liquids.size() + 1 > most_liquids)
     found.push_back(
         fmt::format("species: {} beside liquid, allowed: up to {}", liquids.size(), most_liquids - 1));
-  std::set<std::string> known{first_liquid_name, wall_name, "microparticle"};
+  std::set<std::string> known{first_liquid_name, wall_name, microparticle_name};
   for (const FurtherLiquid& liquid : liquids) {
     const std::string key = "species." + liquid.name;
     if (liquid.name.empty() || !known.insert(liquid.name).second)
@@ -76,25 +77,41 @@ void check_liquids(const Parameters& parameters, std::vector<std::string>& found
   }
 }
 
+bool is_with_microparticles(const PairOfSpecies& pair) {
+  return pair.first == microparticle_name || pair.second == microparticle_name;
+}
+
+bool is_of_further_liquid(const Parameters& parameters, const PairOfSpecies& pair) {
+  const auto& liquids = parameters.mixture.liquids;
+  return std::any_of(liquids.begin(), liquids.end(), [&](const FurtherLiquid& liquid) {
+    return liquid.name == pair.first || liquid.name == pair.second;
+  });
+}
+
 /// Says which pairs are unknown, given twice, asymmetric or missing.
 void check_pairs(const Parameters& parameters, std::vector<std::string>& found) {
   std::vector<std::string> names = names_of_liquids(parameters);
   names.push_back(wall_name);
   const auto known = [&](const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return name == microparticle_name || std::find(names.begin(), names.end(), name) != names.end();
   };
   std::map<NamePair, const PairOfSpecies*> given;
   for (const PairOfSpecies& pair : parameters.mixture.pairs) {
     const std::string key = fmt::format("pairs.{}.{}", pair.first, pair.second);
     for (const std::string& name : {pair.first, pair.second})
       if (!known(name))
-        found.push_back(
-            fmt::format("{}: unknown species {}, allowed: {}", key, name, fmt::join(names, ", ")));
+        found.push_back(fmt::format("{}: unknown species {}, allowed: {}, {}", key, name,
+                                    fmt::join(names, ", "), microparticle_name));
     if (pair.first == pair.second && known(pair.first))
       found.push_back(
           fmt::format("{}: a species with itself, allowed: two different ones (its own law stands "
                       "under species.{})",
                       key, pair.first));
+    else if (is_with_microparticles(pair) && !is_of_further_liquid(parameters, pair))
+      found.push_back(fmt::format(
+          "{}: allowed: a species that is listed (what liquid has with a microparticle is the attraction of "
+          "each, what walls have is microparticle_model.wall_attraction)",
+          key));
     check_coefficients(key, pair.coefficients, found);
     const auto [before, is_new] = given.emplace(name_pair(pair), &pair);
     if (is_new) continue;
@@ -131,7 +148,8 @@ std::vector<std::string> notices(const Parameters& parameters) {
   std::set<double> repulsions{parameters.liquid.repulsion};
   for (const FurtherLiquid& liquid : parameters.mixture.liquids) repulsions.insert(liquid.own.repulsion);
   for (const PairOfSpecies& pair : parameters.mixture.pairs)
-    if (pair.first != wall_name && pair.second != wall_name) repulsions.insert(pair.coefficients.repulsion);
+    if (pair.first != wall_name && pair.second != wall_name && !is_with_microparticles(pair))
+      repulsions.insert(pair.coefficients.repulsion);
   if (repulsions.size() < 2) return {};
   return {
       fmt::format("the many-body repulsion differs among pairs of liquids that share a density (B {}): their "
@@ -154,10 +172,15 @@ double bulk_density(const Parameters& parameters, std::uint32_t liquid) {
                      : parameters.mixture.liquids.at(liquid - 1).bulk_density;
 }
 
-const PairCoefficients* wall_coefficients(const Parameters& parameters) {
+const PairCoefficients* coefficients_of(const Parameters& parameters, const std::string& one,
+                                        const std::string& other) {
   for (const PairOfSpecies& pair : parameters.mixture.pairs)
-    if (name_pair(pair) == NamePair(first_liquid_name, wall_name)) return &pair.coefficients;
+    if (name_pair(pair) == name_pair(one, other)) return &pair.coefficients;
   return nullptr;
+}
+
+const PairCoefficients* wall_coefficients(const Parameters& parameters) {
+  return coefficients_of(parameters, first_liquid_name, wall_name);
 }
 
 std::optional<double> fixed_wall_attraction(const Parameters& parameters) {

@@ -28,13 +28,17 @@ struct FurtherLiquid {
 
 /// The law of two different species, in either order.
 struct PairOfSpecies {
-  std::string first, second;  ///< names of further liquids, "liquid" or "wall"
+  std::string first, second;  ///< names of further liquids, "liquid", "wall" or "microparticle"
   PairCoefficients coefficients;
 };
 
 /// Several liquids in one run. Every pair that can meet needs a law: liquids with each other, and, over a
 /// wall, further liquids with the wall. That of the first liquid with the wall may be given too; then all of
 /// the wall shows it, and takes no contact angles.
+///
+/// A further liquid that is given a law with microparticles has it with all of them, whatever their A_ls: so
+/// a surfactant's tails can cover what its heads and the liquid keep off. Without one it has with them what
+/// the first liquid has.
 ///
 /// In the many-body density all liquids count alike. So the force has a potential only when B is the same for
 /// all pairs (Warren 2013): notices() says when it is not.
@@ -46,6 +50,7 @@ struct MixtureParameters {
 /// Names that a pair may have besides those of further liquids.
 constexpr const char* first_liquid_name = "liquid";
 constexpr const char* wall_name = "wall";
+constexpr const char* microparticle_name = "microparticle";
 
 struct Parameters;
 
@@ -61,7 +66,10 @@ std::string liquid_name(const Parameters& parameters, std::uint32_t liquid);
 double initial_density(const Parameters& parameters, std::uint32_t liquid);
 double bulk_density(const Parameters& parameters, std::uint32_t liquid);
 
-/// The law of the first liquid with the wall, when the mixture gives one.
+/// The law of two different species, named in either order, when the mixture gives one; null otherwise.
+const PairCoefficients* coefficients_of(const Parameters& parameters, const std::string& one,
+                                        const std::string& other);
+/// That of the first liquid with the wall.
 const PairCoefficients* wall_coefficients(const Parameters& parameters);
 
 /// What all of the wall attracts the first liquid with, where that is given in place of contact angles: by

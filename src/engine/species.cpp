@@ -15,7 +15,16 @@ MdpdLaw<double> law_of(const PairCoefficients& coefficients, const Parameters& p
 }
 
 Species species_named(const Parameters& parameters, const std::string& name) {
-  return name == wall_name ? Species::wall : liquid_species(liquid_named(parameters, name));
+  if (name == wall_name) return Species::wall;
+  if (name == microparticle_name) return Species::microparticle;
+  return liquid_species(liquid_named(parameters, name));
+}
+
+void set_coefficients(LawRow& row, std::uint32_t number, const MdpdLaw<double>& law) {
+  row.attraction[number] = static_cast<float>(law.attraction);
+  row.repulsion[number] = static_cast<float>(law.repulsion);
+  row.friction[number] = static_cast<float>(law.friction);
+  row.random_amplitude[number] = static_cast<float>(law.random_amplitude);
 }
 
 }  // namespace
@@ -56,14 +65,21 @@ AlignedVector<LawRow> law_rows(const PairTable& table, const Parameters& paramet
   const auto count = static_cast<std::uint32_t>(parameters.mixture.liquids.size() + 1);
   AlignedVector<LawRow> rows(most_liquids);  // whatever the bits of a key say, there is a row
   for (std::uint32_t i = 0; i < count; ++i)
-    for (std::uint32_t j = 0; j < count; ++j) {
-      const MdpdLaw<double>& law = table(liquid_species(i), liquid_species(j));
-      rows[i].attraction[j] = static_cast<float>(law.attraction);
-      rows[i].repulsion[j] = static_cast<float>(law.repulsion);
-      rows[i].friction[j] = static_cast<float>(law.friction);
-      rows[i].random_amplitude[j] = static_cast<float>(law.random_amplitude);
-    }
+    for (std::uint32_t j = 0; j < count; ++j)
+      set_coefficients(rows[i], j, table(liquid_species(i), liquid_species(j)));
   return rows;
+}
+
+MicroparticleRow microparticle_row(const PairTable& table, const Parameters& parameters) {
+  MicroparticleRow row;
+  const MixtureParameters& mixture = parameters.mixture;
+  for (std::uint32_t number = 0; number <= mixture.liquids.size(); ++number) {
+    set_coefficients(row, number, table(liquid_species(number), Species::microparticle));
+    const bool alike = coefficients_of(parameters, liquid_name(parameters, number), microparticle_name);
+    row.share_of_own[number] = alike ? 0.f : 1.f;
+    if (!alike) row.attraction[number] = 0.f;
+  }
+  return row;
 }
 
 }  // namespace dmf::engine

@@ -52,14 +52,23 @@ struct LawRow {
   alignas(64) float random_amplitude[16] = {};
 };
 
+/// What microparticles have with each liquid.
+struct MicroparticleRow : LawRow {
+  /// 1 for liquids that see the attraction of each microparticle, beside an `attraction` of 0; 0 for those
+  /// that are attracted by all alike.
+  alignas(64) float share_of_own[16] = {};
+};
+
 /// Liquid and wall share all but the attraction, which each wall bead has of its own: its wettability. So
-/// have the beads of microparticles, with a repulsion B_ls of their own (Lan 3.1.2) that is the same for
-/// every liquid: a force without a potential, because B differs between pairs that share a density (Warren
-/// 2013). Microparticle and wall attract, and that is all: contact.h does the rest. Further liquids have with
-/// the others and with the wall what MixtureParameters say.
+/// have the beads of microparticles, with a repulsion B_ls of their own (Lan 3.1.2): a force without a
+/// potential, because B differs between pairs that share a density (Warren 2013). Microparticle and wall
+/// attract, and that is all: contact.h does the rest. Further liquids have with the others, with the wall and
+/// with microparticles what MixtureParameters say; where these don't speak of microparticles, what the first
+/// liquid has.
 PairTable pair_table(const Parameters& parameters);
 
 /// By number of the liquid; empty for one liquid.
 AlignedVector<LawRow> law_rows(const PairTable& table, const Parameters& parameters);
+MicroparticleRow microparticle_row(const PairTable& table, const Parameters& parameters);
 
 }  // namespace dmf::engine

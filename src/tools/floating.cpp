@@ -57,7 +57,7 @@ FloatingResult run_floating(const FloatingRun& run) {
   parameters.observe_interval = 20;
   // Where it floats does not depend on its mass; a light one is there sooner. It never touches the wall.
   parameters.microparticles.wall_attraction = 0;
-  if (run.surfactant > 0) add_surfactant(parameters);
+  if (run.surfactant > 0) add_surfactant(parameters, run.tail_attraction);
   engine::Simulation simulation(parameters, engine::ContactAngleCurve::lan2016(), {1, "auto"});
   simulation.set_wettability([](double, double) { return 40.0; });
   simulation.fill_slab({-half_width, -half_width, 0}, {half_width, half_width, thickness});

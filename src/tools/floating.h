@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "engine/simulation.h"
 
@@ -7,11 +8,12 @@ namespace dmf::tools {
 
 /// A microparticle that floats in the surface of a liquid film: how deep it sits is its contact angle.
 struct FloatingRun {
-  double attraction = -15;  ///< A_ls of the microparticle
-  double radius = 1;        ///< of the microparticle, r_c
-  double surfactant = 0;    ///< dimers in the film's surface (surfactant.h), 1 / r_c^2
-  double settle = 60;       ///< tau before measuring
-  double measure = 100;     ///< tau of measuring, a look every 0.2 tau
+  double attraction = -15;                ///< A_ls of the microparticle
+  double radius = 1;                      ///< of the microparticle, r_c
+  double surfactant = 0;                  ///< dimers in the film's surface (surfactant.h), 1 / r_c^2
+  std::optional<double> tail_attraction;  ///< of their tails with the microparticle; none: its A_ls
+  double settle = 60;                     ///< tau before measuring
+  double measure = 100;                   ///< tau of measuring, a look every 0.2 tau
   std::uint64_t seed = 1;
   engine::Parameters parameters{};  ///< liquid, microparticles, time step; domain and seed are the run's own
 };

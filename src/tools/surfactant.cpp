@@ -29,7 +29,7 @@ engine::Parameters parameters_of(const SurfactantFilmRun& how) {
 
 }  // namespace
 
-void add_surfactant(engine::Parameters& parameters) {
+void add_surfactant(engine::Parameters& parameters, std::optional<double> on_microparticles) {
   const engine::LiquidParameters& liquid = parameters.liquid;
   const auto law = [&](double attraction) {
     return engine::PairCoefficients{attraction, liquid.repulsion, liquid.random_amplitude};
@@ -41,6 +41,11 @@ void add_surfactant(engine::Parameters& parameters) {
                               {"head", "tail", law(-20)},
                               {"head", "wall", law(-17)},
                               {"tail", "wall", law(-17)}};
+  if (on_microparticles)
+    parameters.mixture.pairs.push_back(
+        {"tail",
+         engine::microparticle_name,
+         {*on_microparticles, parameters.microparticles.liquid_repulsion, liquid.random_amplitude}});
 }
 
 engine::ChainPlacement surfactant_dimers(std::uint32_t count, const Vector3d& lower, const Vector3d& upper) {

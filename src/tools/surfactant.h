@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/chain.h"
@@ -11,8 +12,9 @@ namespace dmf::tools {
 /// attracts more than itself, and a tail, which it attracts half as much. Adds the species "head" and "tail"
 /// with all their pairs. What they have with a wall is what liquid has that shows 90 degrees there. B is that
 /// of the liquid for all, so that there is a potential (Warren 2013).
+/// @param on_microparticles  attraction of tails with microparticles; without one, each microparticle's A_ls.
 /// @pre `parameters` has one liquid, the default one.
-void add_surfactant(engine::Parameters& parameters);
+void add_surfactant(engine::Parameters& parameters, std::optional<double> on_microparticles = {});
 /// Dimers of it, the head first, lying anywhere in a box. @param upper  of the box, r_c.
 engine::ChainPlacement surfactant_dimers(std::uint32_t count, const engine::Vector3d& lower,
                                          const engine::Vector3d& upper);

@@ -84,8 +84,8 @@ inline void note_species(System& system) {
   }
 }
 
-/// Three liquids in place of one, every pair and the walls with a law of their own. Bead k becomes one of
-/// liquid k mod 3.
+/// Three liquids in place of one, every pair and the walls with a law of their own, and one of them with
+/// microparticles. Bead k becomes one of liquid k mod 3.
 inline void mix(System& system) {
   MixtureParameters& mixture = system.parameters.mixture;
   const bool plain = system.parameters.liquid.repulsion == 0;
@@ -94,11 +94,9 @@ inline void mix(System& system) {
                  : PairCoefficients{attraction, repulsion, random_amplitude};
   };
   mixture.liquids = {{"oil", law(-33, 20, 5)}, {"wax", law(-28, 31, 2)}};
-  mixture.pairs = {{"liquid", "oil", law(-21, 25, 7)},
-                   {"wax", "liquid", law(-17, 12, 0)},
-                   {"oil", "wax", law(-9, 40, 9)},
-                   {"oil", "wall", law(-19, 22, 4)},
-                   {"wall", "wax", law(-13, 27, 8)}};
+  mixture.pairs = {{"liquid", "oil", law(-21, 25, 7)}, {"wax", "liquid", law(-17, 12, 0)},
+                   {"oil", "wax", law(-9, 40, 9)},     {"oil", "wall", law(-19, 22, 4)},
+                   {"wall", "wax", law(-13, 27, 8)},   {"microparticle", "oil", law(-23, 7, 11)}};
   Beads& beads = system.beads;
   beads.species.clear();
   for (std::size_t k = 0; k < beads.size(); ++k) beads.species.push_back(static_cast<std::uint8_t>(k % 3));

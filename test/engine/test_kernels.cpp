@@ -151,7 +151,7 @@ Exact nothing_yet(const std::vector<End>& of) {
 
 double own_attraction(const End& end) { return end.at.w; }
 
-/// What the parameters say of two species, "wall" being one.
+/// What the parameters say of two species, "wall" and "microparticle" being two.
 MdpdLaw<double> law_between(const Parameters& parameters, const std::string& a, const std::string& b) {
   LiquidParameters liquid = parameters.liquid;
   const auto take = [&liquid](const PairCoefficients& law) {
@@ -167,13 +167,36 @@ MdpdLaw<double> law_between(const Parameters& parameters, const std::string& a, 
   return liquid_law(liquid, parameters.time_step);
 }
 
+std::vector<std::string> names_of_liquids(const Parameters& parameters) {
+  std::vector<std::string> names{"liquid"};
+  for (const FurtherLiquid& liquid : parameters.mixture.liquids) names.push_back(liquid.name);
+  return names;
+}
+
+/// Of a liquid with microparticles, and whether it sees the attraction of each.
+struct LawWithMicroparticles {
+  MdpdLaw<double> law;
+  bool of_each;
+  double attraction(double own) const { return of_each ? own : law.attraction; }
+};
+
+/// Only the "oil" of mix() has a law of its own.
+std::vector<LawWithMicroparticles> laws_with_microparticles(const Parameters& parameters) {
+  std::vector<LawWithMicroparticles> laws;
+  for (const std::string& name : names_of_liquids(parameters)) {
+    MdpdLaw<double> law = liquid_law(parameters.liquid, parameters.time_step);
+    law.repulsion = parameters.microparticles.liquid_repulsion;
+    const bool alike = name == "oil";
+    laws.push_back({alike ? law_between(parameters, name, "microparticle") : law, !alike});
+  }
+  return laws;
+}
+
 Exact sum_over_all_pairs(const System& system, const Sorted& sorted) {
   const Ends ends(system, sorted);
   const Parameters& parameters = system.parameters;
-  MdpdLaw<double> body_law = liquid_law(parameters.liquid, parameters.time_step);
-  body_law.repulsion = parameters.microparticles.liquid_repulsion;
-  std::vector<std::string> names{"liquid"};
-  for (const FurtherLiquid& liquid : parameters.mixture.liquids) names.push_back(liquid.name);
+  const std::vector<LawWithMicroparticles> body_laws = laws_with_microparticles(parameters);
+  const std::vector<std::string> names = names_of_liquids(parameters);
   std::vector<std::vector<MdpdLaw<double>>> laws(names.size());
   for (std::size_t a = 0; a < names.size(); ++a)
     for (std::size_t b = 0; b < names.size(); ++b)
@@ -192,9 +215,10 @@ Exact sum_over_all_pairs(const System& system, const Sorted& sorted) {
         ends.domain, [&](const End&) -> const MdpdLaw<double>& { return wall_law; }, bead, ends.wall,
         [&](const End& j) { return bead.species == 0 ? own_attraction(j) : wall_law.attraction; }, i, exact,
         parameters.spline);
+    const LawWithMicroparticles& body_law = body_laws[bead.species];
     add_forces(
-        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return body_law; }, bead, ends.bodies,
-        own_attraction, i, exact);
+        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return body_law.law; }, bead, ends.bodies,
+        [&](const End& j) { return body_law.attraction(own_attraction(j)); }, i, exact);
   }
   return exact;
 }
@@ -207,15 +231,16 @@ struct ExactOnBodies {
 ExactOnBodies sum_over_all_body_pairs(const System& system, const Sorted& sorted) {
   const Ends ends(system, sorted);
   const MicroparticleParameters& model = system.parameters.microparticles;
-  MdpdLaw<double> law = liquid_law(system.parameters.liquid, system.parameters.time_step), adhesion = law;
-  law.repulsion = model.liquid_repulsion;
+  const std::vector<LawWithMicroparticles> laws = laws_with_microparticles(system.parameters);
+  MdpdLaw<double> adhesion = laws[0].law;
   adhesion.repulsion = adhesion.friction = adhesion.random_amplitude = 0;
   ExactOnBodies exact{nothing_yet(ends.bodies), nothing_yet(ends.bodies)};
   for (std::size_t i = 0; i < ends.bodies.size(); ++i) {
     const End& bead = ends.bodies[i];
     add_forces(
-        ends.domain, [&](const End&) -> const MdpdLaw<double>& { return law; }, bead, ends.liquid,
-        [&](const End&) { return own_attraction(bead); }, i, exact.of_liquid);
+        ends.domain, [&](const End& j) -> const MdpdLaw<double>& { return laws[j.species].law; }, bead,
+        ends.liquid, [&](const End& j) { return laws[j.species].attraction(own_attraction(bead)); }, i,
+        exact.of_liquid);
     add_forces(
         ends.domain, [&](const End&) -> const MdpdLaw<double>& { return adhesion; }, bead, ends.wall,
         [&](const End&) { return model.wall_attraction; }, i, exact.of_wall);

@@ -280,6 +280,46 @@ TEST(Wall, OfTheMixturesAttractionIsTheSameEverywhereAndTakesNoContactAngle) {
                     "wall.attraction: 10 beside pairs.liquid.wall"));
 }
 
+/// A microparticle beside a slab of one liquid, after a few steps without noise.
+std::shared_ptr<const Snapshot> beside_a_slab(const Parameters& parameters, std::uint32_t species,
+                                              bool smooth, double attraction) {
+  Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  simulation.fill({{0, 0, 1}, {7, 7, 4}, species});
+  MicroparticlePlacement placement = sphere_at({3.5, 3.5}, 5.6);
+  placement.attraction = attraction;
+  placement.smooth = smooth;
+  simulation.add_microparticle(placement);
+  run(simulation, 40);
+  return simulation.observe({true});
+}
+
+TEST(Species, HasWithMicroparticlesTheLawOfThatPairWhateverTheirOwnAttraction) {
+  // A liquid of another name but the first one's numbers moves as that one does around a microparticle that
+  // attracts with what the pair has: without noise, since the keys tell the two apart.
+  Parameters alone = periodic_box(7);
+  alone.liquid.random_amplitude = 0;
+  alone.watchdog.lowest_temperature = 0;
+  alone.microparticles.liquid_repulsion = 7;
+  Parameters mixed = alone;
+  mixed.microparticles.liquid_repulsion = 3;
+  const LiquidParameters& liquid = alone.liquid;
+  mixed.mixture.liquids = {{"oil", {liquid.attraction, liquid.repulsion, 0}, 6, 6.06}};
+  mixed.mixture.pairs = {{"liquid", "oil", {-10, liquid.repulsion, 0}},
+                         {"oil", "microparticle", {-23, 7, 0}}};
+  for (const bool smooth : {false, true}) {
+    SCOPED_TRACE(smooth ? "smooth" : "shell");
+    const auto as_oil = beside_a_slab(mixed, 1, smooth, -9), as_liquid = beside_a_slab(alone, 0, smooth, -23),
+               weaker = beside_a_slab(alone, 0, smooth, -9);
+    const MicroparticleObservation &one = as_oil->microparticles.at(0),
+                                   &other = as_liquid->microparticles.at(0);
+    EXPECT_EQ(one.position, other.position);
+    EXPECT_LT(one.velocity.z(), weaker->microparticles.at(0).velocity.z());  // the stronger one draws it down
+    ASSERT_EQ(as_oil->positions.size(), as_liquid->positions.size());
+    for (std::size_t k = 0; k < as_oil->positions.size(); ++k)
+      EXPECT_EQ(as_oil->positions[k], as_liquid->positions[k]) << "bead " << k;
+  }
+}
+
 TEST(PairTable, ThatIsNotSoundIsRefusedByWhatIsWrong) {
   const auto refused = [](auto change) {
     Parameters parameters = oil_bath();
@@ -303,7 +343,12 @@ TEST(PairTable, ThatIsNotSoundIsRefusedByWhatIsWrong) {
   EXPECT_TRUE(holds(refused([](auto& m) {
                       m.pairs.push_back({"oil", "tar", {-12, 25, 6}});
                     }),
-                    "pairs.oil.tar: unknown species tar, allowed: liquid, oil, wall"));
+                    "pairs.oil.tar: unknown species tar, allowed: liquid, oil, wall, microparticle"));
+  for (const char* name : {"liquid", "wall"})
+    EXPECT_TRUE(holds(refused([name](auto& m) {
+                        m.pairs.push_back({name, "microparticle", {-12, 3, 6}});
+                      }),
+                      std::string(name) + ".microparticle: allowed: a species that is listed"));
   EXPECT_TRUE(holds(refused([](auto& m) {
                       m.pairs.push_back({"oil", "oil", {-12, 25, 6}});
                     }),

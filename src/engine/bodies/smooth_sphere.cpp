@@ -81,9 +81,10 @@ void add_smooth_densities(const PairPass& pass, const Microparticles& bodies, co
 }
 
 void add_smooth_forces(const PairPass& pass, const Microparticles& bodies, const Pairs& pairs) {
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
+  const MdpdLaw<double>& of_first = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& adhesion = pass.laws(Species::wall, Species::microparticle);
-  const double range = 1.0 / law.inverse_cutoff_radius, short_range = 1.0 / law.inverse_repulsion_radius;
+  const double range = 1.0 / of_first.inverse_cutoff_radius,
+               short_range = 1.0 / of_first.inverse_repulsion_radius;
   for (const SmoothNeighbours& near : pairs.smooth_neighbours()) {
     const Microparticle& particle = bodies.all()[near.microparticle];
     const SmoothShell shell = shell_of(particle, pass);
@@ -94,12 +95,16 @@ void add_smooth_forces(const PairPass& pass, const Microparticles& bodies, const
     for_each_around(pass, pass.position, near.liquid, particle.body.position, reach,
                     [&](std::uint32_t j, const Vector3d& out, double distance) {
                       const double beads = shell.weight(distance, range);
+                      const std::uint32_t key = key_bits(pass.position[j].w);
+                      const std::uint32_t number = pass.bodies.row ? key & species_bits : 0;
+                      const MdpdLaw<double>& law = pass.laws(liquid_species(number), Species::microparticle);
+                      const bool own = !pass.bodies.row || pass.bodies.row->share_of_own[number] == 1;
                       const Record& moving = pass.predicted[j];
                       const double parting = out.dot(vector_of(moving) - velocity);
                       const double zeta = HWY_NAMESPACE::pair_noise<double>(
-                          key_bits(pass.position[j].w), HWY_NAMESPACE::body_key(particle.first_bead));
+                          key, HWY_NAMESPACE::body_key(particle.first_bead));
                       const double magnitude =
-                          particle.placement.attraction * beads +
+                          (own ? particle.placement.attraction : law.attraction) * beads +
                           law.repulsion * (moving.w + own_density) * shell.weight(distance, short_range) -
                           law.friction * beads * parting +
                           law.random_amplitude * std::sqrt(std::max(beads, 0.0)) * zeta;

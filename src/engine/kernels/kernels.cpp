@@ -200,7 +200,8 @@ HWY_INLINE void add_wall_forces(const PairPass& pass, const MdpdLaw<Lanes>& law,
   } else {
     const std::uint32_t number = species_number(i.position);
     const auto own = law_between<model>(pass, liquid_species(number), Species::wall);
-    const WallOfMixture seen{wall, Lanes(number == 0 ? 1 : 0), number == 0 ? Lanes(0) : own.attraction};
+    const SeenInMixture<WallBeads> seen{wall, Lanes(number == 0 ? 1 : 0),
+                                        number == 0 ? Lanes(0) : own.attraction};
     add_forces<part, weight, across_periodic>(pass, own, i, seen, count, total);
   }
 }
@@ -241,7 +242,7 @@ HWY_INLINE void add_to(Record& force, const ForceSum& total) {
 }
 
 /// Adds what the microparticles near a cell do to its liquid.
-template <PairForce part, DissipativeWeight weight>
+template <PairForce part, DissipativeWeight weight, PairModel model>
 HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
                                 const Packed& packed) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
@@ -253,8 +254,16 @@ HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& bloc
     ForceSum total;
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
     const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-    add_forces<part, weight, true>(pass, in_lanes(law), i, BodyBeads{pass, packed.foreign_in_range}, count,
-                                   total);
+    const BodyBeads beads{pass, packed.foreign_in_range};
+    if constexpr (model == PairModel::one_liquid) {
+      add_forces<part, weight, true>(pass, in_lanes(law), i, beads, count, total);
+    } else {
+      const std::uint32_t number = species_number(i.position);
+      const SeenInMixture<BodyBeads> seen{beads, Lanes(pass.bodies.row->share_of_own[number]),
+                                          Lanes(pass.bodies.row->attraction[number])};
+      add_forces<part, weight, true>(
+          pass, in_lanes(pass.laws(liquid_species(number), Species::microparticle)), i, seen, count, total);
+    }
     add_to(pass.force[bead], total);
   }
 }
@@ -267,12 +276,13 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       force_on_cell<part, weight, model, true>(pass, block, cell, packed);
     else
       force_on_cell<part, weight, model, false>(pass, block, cell, packed);
-    if (cell.first_body_run < cell.end_body_run) add_body_forces<part, weight>(pass, block, cell, packed);
+    if (cell.first_body_run < cell.end_body_run)
+      add_body_forces<part, weight, model>(pass, block, cell, packed);
   }
 }
 
 /// What liquid and wall do to the beads of microparticles, each by itself.
-template <DissipativeWeight weight>
+template <DissipativeWeight weight, bool mixture>
 void body_force(const PairPass& pass, const NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
@@ -290,9 +300,13 @@ void body_force(const PairPass& pass, const NeighbourBlock& block) {
       ForceSum total;
       const Receiver i = receiver(bead);
       const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-      add_forces<PairForce::all, weight, true>(
-          pass, in_lanes(law), i, Liquid<BeadIndices>{pass, {packed.foreign_in_range}, Lanes(i.position.w)},
-          count, total);
+      const Liquid<BeadIndices> liquid{pass, {packed.foreign_in_range}, Lanes(i.position.w)};
+      if constexpr (mixture)
+        add_forces<PairForce::all, weight, true>(
+            pass, LawsOfMicroparticle<MdpdLaw<Lanes>>(in_lanes(law), *pass.bodies.row), i, liquid, count,
+            total);
+      else
+        add_forces<PairForce::all, weight, true>(pass, in_lanes(law), i, liquid, count, total);
       pass.bodies.liquid_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
     }
     candidates =
@@ -316,7 +330,7 @@ Kernels table_for() {
           {&force<PairForce::all, weight, model>, &force<PairForce::conservative, weight, model>,
            &force<PairForce::random, weight, model>, &force<PairForce::friction, weight, model>},
           &body_density,
-          &body_force<weight>};
+          &body_force<weight, model != PairModel::one_liquid>};
 }
 
 Kernels table(DissipativeWeight weight, PairModel model) {

@@ -19,6 +19,7 @@ struct BodyPass {
   Record* liquid_force = nullptr;      ///< force pass writes
   Record* wall_force = nullptr;        ///< force pass writes
   bool count_liquid = true, counted_by_liquid = true;
+  const MicroparticleRow* row = nullptr;  ///< of mixtures
 };
 
 /// How the walls move, r_c / tau. Their beads stay where they are: only their friction feels it.

@@ -141,9 +141,11 @@ struct WallUnderBody {
   }
 };
 
-/// Wall beads met by a liquid for which all of them are alike, or by one that sees the attraction of each.
-struct WallOfMixture {
-  WallBeads beads;
+/// Beads of walls or microparticles met by a liquid for which all of them are alike, or by one that sees the
+/// attraction of each.
+template <class Others>
+struct SeenInMixture {
+  Others beads;
   Lanes share_of_own;  ///< 1: of each bead, 0: the same of all
   Lanes of_all;
   HWY_INLINE Partners load(std::size_t k) const {
@@ -167,6 +169,16 @@ struct LawsOfLiquid {
         random_amplitude(row.random_amplitude) {}
 };
 
+/// What a bead of a microparticle has with the liquids of a mixture.
+template <class Law>
+struct LawsOfMicroparticle {
+  LawsOfLiquid<Law> laws;
+  LaneTable share_of_own;
+
+  HWY_INLINE LawsOfMicroparticle(const Law& shared, const MicroparticleRow& row)
+      : laws(shared, row), share_of_own(row.share_of_own) {}
+};
+
 /// The law of the pairs with `j`, whose attraction stands in it: one for all ...
 HWY_INLINE const MdpdLaw<Lanes>& law_with(const MdpdLaw<Lanes>& law, Partners&) { return law; }
 HWY_INLINE const SplineLaw<Lanes>& law_with(const SplineLaw<Lanes>& law, Partners&) { return law; }
@@ -179,6 +191,14 @@ HWY_INLINE Law law_with(const LawsOfLiquid<Law>& laws, Partners& j) {
   law.repulsion = laws.repulsion[species];
   law.friction = laws.friction[species];
   law.random_amplitude = laws.random_amplitude[species];
+  return law;
+}
+/// Its own attraction stands in `j`.
+template <class Law>
+HWY_INLINE Law law_with(const LawsOfMicroparticle<Law>& laws, Partners& j) {
+  const Lanes own = laws.share_of_own[j.key & UnsignedLanes(species_bits)] * j.attraction;
+  const Law law = law_with(laws.laws, j);
+  j.attraction = j.attraction + own;
   return law;
 }
 

@@ -136,9 +136,16 @@ Record record_of(const Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
+/// What a liquid has with a microparticle's bead whose own attraction is `own`.
+MdpdLaw<double> law_with_body(const PairPass& pass, Species liquid, double own) {
+  MdpdLaw<double> law = pass.laws(liquid, Species::microparticle);
+  const auto number = static_cast<std::size_t>(liquid);
+  if (!pass.bodies.row || pass.bodies.row->share_of_own[number] == 1) law.attraction = own;
+  return law;
+}
+
 template <PairForce part, DissipativeWeight weight, PairModel model>
 void force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<double>& body_law = pass.laws(Species::liquid, Species::microparticle);
   std::vector<Vector3d> total(block.end - block.begin, Vector3d::Zero());
   for_each_pair_in_range(block, [&](std::uint32_t bead, std::uint32_t other) {
     const auto law = law_between<model>(pass, species_of<model>(pass, bead), species_of<model>(pass, other));
@@ -161,29 +168,32 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
                                                              wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
-                        block.body_runs.data() + cell.end_body_run, at, body_law.range(),
+                        block.body_runs.data() + cell.end_body_run, at, wall_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          sum += force_between<part, weight>(body_law, pass.bodies.position[other].w, d,
-                                                             liquid_end(pass, bead), body_end(pass, other));
+                          const MdpdLaw<double> law =
+                              law_with_body(pass, species, pass.bodies.position[other].w);
+                          sum += force_between<part, weight>(law, law.attraction, d, liquid_end(pass, bead),
+                                                             body_end(pass, other));
                         });
       pass.force[bead] = record_of(sum);
     }
 }
 
-template <DissipativeWeight weight>
+template <DissipativeWeight weight, PairModel model>
 void body_force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
+  const double range = pass.laws(Species::liquid, Species::microparticle).range();
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record& at = pass.bodies.position[bead];
       Vector3d of_liquid = Vector3d::Zero(), of_wall = Vector3d::Zero();
-      for_each_in_range(pass, pass.position, block.runs.data() + cell.first_run,
-                        block.runs.data() + cell.end_run, at, law.range(),
-                        [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
-                          of_liquid += force_between<PairForce::all, weight>(
-                              law, at.w, d, body_end(pass, bead), liquid_end(pass, other));
-                        });
+      for_each_in_range(
+          pass, pass.position, block.runs.data() + cell.first_run, block.runs.data() + cell.end_run, at,
+          range, [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
+            const MdpdLaw<double> law = law_with_body(pass, species_of<model>(pass, other), at.w);
+            of_liquid += force_between<PairForce::all, weight>(law, law.attraction, d, body_end(pass, bead),
+                                                               liquid_end(pass, other));
+          });
       for_each_in_range(pass, pass.wall, block.wall_runs.data() + cell.first_wall_run,
                         block.wall_runs.data() + cell.end_wall_run, at, wall_law.range(),
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
@@ -201,7 +211,7 @@ Kernels kernels() {
           {&force<PairForce::all, weight, model>, &force<PairForce::conservative, weight, model>,
            &force<PairForce::random, weight, model>, &force<PairForce::friction, weight, model>},
           &body_density,
-          &body_force<weight>};
+          &body_force<weight, model>};
 }
 
 template <DissipativeWeight weight>

@@ -21,7 +21,7 @@ constexpr double optimum_force = 0.0007;  // of figure 7
 
 /// Yao's f_s are those of ridges 4 wide, whole numbers apart: 3, 5, 9, 11 are 0.571, 0.444, 0.308, 0.267.
 std::vector<Droplet> droplets(bool quick, const engine::ContactAngleCurve& curve) {
-  const double drive = quick ? 20 : 300;  // Yao's: 5,000
+  const double drive = quick ? 20 : 1500;  // Yao's: 5,000
   std::vector<Droplet> all;
   // Figure 4: static angles at f_s 0.444, beside those of the smooth wall in the same slab.
   for (const double attraction : {-11.0, -13.0, -15.0, -17.0})

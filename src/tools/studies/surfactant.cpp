@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <optional>
 #include <vector>
 
 #include "tools/cases.h"
@@ -15,15 +16,19 @@ const std::vector<double> coverages{0, 0.25, 0.5, 1, 1.5, 2};  // of a film's su
 
 /// A microparticle on a film.
 struct Floated {
-  double attraction;  ///< A_ls
-  double coverage;    ///< 1 / r_c^2
+  double attraction;              ///< A_ls
+  double coverage;                ///< 1 / r_c^2
+  std::optional<double> tails{};  ///< attraction of tails with it in place of A_ls
 };
-/// Lan's hydrophobic one, which the film swallows by itself, and one that floats at 111 degrees.
-const std::vector<Floated> floated{{-15, 0}, {-15, 1}, {-6, 0}, {-6, 1}};
+/// Lan's hydrophobic one, which the film swallows by itself, and one that floats at 109 degrees: with a
+/// surfactant whose tails have with it what the liquid has, and with ever more that hold on to it.
+const std::vector<Floated> floated{{-15, 0},     {-15, 1},     {-6, 0},      {-6, 1},
+                                   {-6, 1, -15}, {-6, 1, -25}, {-6, 1, -35}, {-6, 2, -25}};
 
 std::string label_of(double coverage) { return fmt::format("coverage={:g}", coverage); }
 std::string label_of(const Floated& one) {
-  return fmt::format("floating A={:g} coverage={:g}", one.attraction, one.coverage);
+  std::string label = fmt::format("floating A={:g} coverage={:g}", one.attraction, one.coverage);
+  return one.tails ? label + fmt::format(" tails={:g}", *one.tails) : label;
 }
 
 SurfactantFilmRun film_of(const StudyOptions& options, double coverage, std::uint64_t seed) {
@@ -67,6 +72,7 @@ Results run_floated(const StudyOptions& options) {
                        FloatingRun run;
                        run.attraction = one.attraction;
                        run.surfactant = one.coverage;
+                       run.tail_attraction = one.tails;
                        run.seed = seed;
                        run.parameters.time_step = options.time_step_or(run.parameters.time_step);
                        if (options.quick) run.settle = run.measure = 10;
