@@ -52,11 +52,11 @@ enum class MicroparticlePlace { dry, front, rear, inside };
 /// divided by the difference of `steps`.
 struct MicroparticleTotals {
   std::uint64_t steps = 0;
-  std::uint64_t steps_in_contact = 0;          ///< with the lower plate
+  std::uint64_t steps_in_contact = 0;          ///< with what is below it: lower plate or a label grid's solid
   double height = 0;                           ///< of the centre over the wall plane, r_c
-  double normal_force = 0;                     ///< of the lower plate, k_BT / r_c
+  double normal_force = 0;                     ///< of what is below it, its part upwards, k_BT / r_c
   Vector3d drive_force = Vector3d::Zero();     ///< of the liquid
-  Vector3d friction_force = Vector3d::Zero();  ///< of the wall, in its plane
+  Vector3d friction_force = Vector3d::Zero();  ///< of plates and solid, in their planes
 };
 
 /// One microparticle between two steps. Reduced units. Forces are means over the last `observe_interval`
@@ -75,7 +75,7 @@ struct MicroparticleObservation {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Vector3d velocity = Vector3d::Zero();
   Vector3d angular_velocity = Vector3d::Zero();
-  double contact_fraction = 0;  ///< of the last steps: how many in contact with the lower plate
+  double contact_fraction = 0;  ///< of the last steps: how many in contact with what is below it
   double normal_force = 0;
   Vector3d drive_force = Vector3d::Zero();
   Vector3d friction_force = Vector3d::Zero();

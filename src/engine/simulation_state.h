@@ -129,8 +129,8 @@ struct Simulation::State {
   void require_sound_bodies(const BodyDriftReport& report) {
     if (report.wild == 0) return;
     stop(fmt::format(
-        "microparticle {} moves more than {} r_c a step, or to no number; look at time_step ({}), "
-        "elastic_modulus ({}), its mass and the forces on it",
+        "microparticle {} moves more than {} r_c a step, to no number or into the solid of the label grid; "
+        "look at time_step ({}), elastic_modulus ({}), its mass and the forces on it",
         report.wild, largest_step, parameters.time_step, parameters.microparticles.elastic_modulus));
   }
 

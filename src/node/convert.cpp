@@ -83,7 +83,7 @@ dmf_sim::Microparticle to_microparticle(const engine::MicroparticleObservation& 
   message.angular_velocity_mdpd = to_vector(body.angular_velocity);
   message.contact = body.contact_fraction > kTouching;
   message.contact_fraction = body.contact_fraction;
-  message.contact_normal.z = message.contact ? 1 : 0;  // the plate is flat
+  message.contact_normal.z = message.contact ? 1 : 0;  // it stands on what is below it
   message.normal_force = body.normal_force * units.force_N();
   message.friction_force = to_vector(body.friction_force * units.force_N());
   message.drive_force = to_vector(body.drive_force * units.force_N());

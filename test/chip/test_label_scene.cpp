@@ -233,9 +233,6 @@ TEST(LabelScene, WhatIsWrongIsNamedWithWhatIsAllowed) {
   EXPECT_TRUE(
       holds(refused("label_grid: {shapes: [" + box + "]}\ndroplets: [{center: [4, 3, 2], radius: 1.5}]\n"),
             "is in the solid of the label grid"));
-  EXPECT_TRUE(holds(
-      refused("label_grid: {shapes: [" + box + "]}\nmicroparticles: [{center: [4, 3, 2.5], radius: 1}]\n"),
-      "microparticle: with a label grid"));
   EXPECT_TRUE(holds(refused("label_grid: {shape: [" + box + "]}\n"), "did you mean `shapes`"));
 
   const Folder folder;

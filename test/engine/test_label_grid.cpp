@@ -292,9 +292,13 @@ TEST(LabelGrid, DropletsAndMicroparticlesThatDoNotGoWithItAreRefusedAndNothingCh
   EXPECT_TRUE(holds(refusal([&] { simulation.add_droplet({{5, 5, 3 * a}, 2}); }), "in the solid"));
   EXPECT_TRUE(holds(refusal([&] { simulation.fill_slab({0, 0, 0}, {9, 9, 2}); }), "no fluid voxel"));
   EXPECT_TRUE(holds(refusal([&] {
-                      simulation.add_microparticle(sphere_at({5, 5}, 8.0));
+                      simulation.add_microparticle(sphere_at({5, 5}, 3 * a + 0.9));
                     }),
-                    "with a label grid"));
+                    "is 0.9 r_c from the label grid's solid, allowed: its radius of 1 or more"));
+  EXPECT_TRUE(holds(refusal([&] {
+                      simulation.add_microparticle(sphere_at({5, 5}, 1.5));
+                    }),
+                    "is 0 r_c from the label grid's solid"));
   EXPECT_EQ(*simulation.observe({false, true})->state_hash, before);
   EXPECT_NO_THROW(simulation.add_droplet({{5, 5, 3 * a + 2.1}, 2}));
 }

@@ -8,7 +8,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-Vector3d in_wall(const Vector3d& v) { return {v.x(), v.y(), 0}; }
+Vector3d in_wall(const Vector3d& v, const WallContact& contact) {
+  return v - contact.normal.dot(v) * contact.normal;
+}
 
 /// Impulse against a motion that `stopping` would end: all of it while it stays within the static limit, the
 /// kinetic one beyond.
@@ -31,7 +33,7 @@ void apply_impulse(RigidBody& body, const Vector3d& arm, const Vector3d& impulse
 
 /// Slows turning about axes in the wall by the torque f_r F_normal R.
 void resist_rolling(const Friction& friction, const WallContact& contact, double time_step, RigidBody& body) {
-  const Vector3d rate = in_wall(body.angular_velocity());
+  const Vector3d rate = in_wall(body.angular_velocity(), contact);
   const double speed = rate.norm();
   if (speed == 0) return;
   const Vector3d axis = rate / speed;
@@ -81,7 +83,7 @@ FrictionReport apply_friction(ContactModel model, const Friction& friction,
     // lan2016 looks at the centre, coulomb at the point of contact.
     const bool at_centre = model == ContactModel::lan2016;
     const Vector3d arm = at_centre ? Vector3d::Zero() : contact.arm;
-    const Vector3d sliding = in_wall(body.velocity + body.angular_velocity().cross(arm));
+    const Vector3d sliding = in_wall(body.velocity + body.angular_velocity().cross(arm), contact);
     if (const double speed = sliding.norm(); speed > 0) {
       const Vector3d direction = sliding / speed;
       const double stopping = speed / mobility(body, arm, direction);
@@ -94,8 +96,7 @@ FrictionReport apply_friction(ContactModel model, const Friction& friction,
   }
   if (model == ContactModel::lan2016 && !contacts.empty()) {
     const WallContact& contact = contacts.front();
-    const Vector3d to_centre(0, 0, std::copysign(contact.radius, -contact.arm.z()));
-    report.rolling = in_wall(body.angular_velocity()).cross(to_centre);
+    report.rolling = in_wall(body.angular_velocity(), contact).cross(contact.radius * contact.normal);
   }
   return report;
 }

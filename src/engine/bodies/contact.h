@@ -14,9 +14,10 @@ struct ContactSphere {
   double radius;    ///< r_c
 };
 
-/// Where a body touches the wall.
+/// Where a body touches a plate or the solid of a label grid.
 struct WallContact {
   Vector3d arm;         ///< from the centre of mass to the point of contact, chip frame, r_c
+  Vector3d normal;      ///< out of the wall, of length 1
   double radius;        ///< of the sphere that touches, r_c
   double normal_force;  ///< k_BT / r_c, > 0
 };
@@ -30,7 +31,7 @@ struct Friction {
 
 /// What friction did to a body in one step.
 struct FrictionReport {
-  Vector3d force = Vector3d::Zero();    ///< of the wall, mean over the step, in its plane
+  Vector3d force = Vector3d::Zero();    ///< of all walls, mean over the step, in their planes
   Vector3d rolling = Vector3d::Zero();  ///< velocity of the centre that comes from turning (lan2016 only)
 };
 
@@ -59,7 +60,8 @@ double wall_adhesion(double attraction, double radius, double beads_per_area, co
 ///
 /// lan2016 (Lan 3.1.3, 3.1.4): sliding friction f F_normal slows the centre and makes no torque; rolling
 /// friction, f_r F_normal on the arm R, slows the turning about axes in the wall; what turns also rolls: the
-/// centre moves on by R times the angle, besides its own velocity.
+/// centre moves on by R times the angle, besides its own velocity. Where it touches more than one wall, it
+/// rolls on the first.
 ///
 /// coulomb: friction acts at the point of contact, against the velocity there, up to the impulse that stops
 /// it; so it makes a torque, and a sphere that rolls without sliding feels none. Rolling friction as above.

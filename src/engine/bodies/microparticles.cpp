@@ -40,6 +40,20 @@ void require_sound(const MicroparticlePlacement& placement, const Parameters& pa
 /// Nearest that liquid may be to the surface of a microparticle when one of both is placed, r_c.
 constexpr double smallest_gap = 0.5;
 
+Vector3d centre_of(const Microparticle& particle, const ContactSphere& sphere) {
+  return particle.body.position + particle.body.orientation * sphere.offset;
+}
+
+/// How near a sphere's centre comes to the solid of a label grid when that is less than its radius.
+double distance_to(const Solid& solid, const Vector3d& centre, double radius) {
+  if (solid.contains(centre.cast<float>())) return 0;
+  std::vector<SolidTouch> touches;
+  solid.append_touches(centre, radius, touches);
+  double nearest = radius;
+  for (const SolidTouch& touch : touches) nearest = std::min(nearest, touch.distance);
+  return nearest;
+}
+
 /// From a microparticle's surface to a place, r_c; where that is far, something far.
 double gap_to(const Vector3d& place, const Microparticle& particle, const Domain& domain) {
   const Vector3d from_centre = domain.nearest_image(place - particle.body.position);
@@ -66,7 +80,7 @@ void require_apart(const Microparticle& particle, const std::vector<Vector3d>& l
 
 }  // namespace
 
-Microparticles::Microparticles(const Parameters& parameters) : parameters_(parameters) {}
+Microparticles::Microparticles(const Parameters& parameters) : parameters_(parameters), solid_(parameters) {}
 
 std::uint32_t Microparticles::add(const MicroparticlePlacement& placement,
                                   const std::vector<Vector3d>& liquid, double smallest_mass) {
@@ -116,12 +130,16 @@ bool Microparticles::clear_of(const Vector3d& site) const {
   });
 }
 
+bool Microparticles::is_in_solid(const Microparticle& particle) const {
+  return !solid_.empty() && std::any_of(particle.contact_spheres.begin(), particle.contact_spheres.end(),
+                                        [&](const ContactSphere& sphere) {
+                                          return solid_.contains(centre_of(particle, sphere).cast<float>());
+                                        });
+}
+
 void Microparticles::require_room(const Microparticle& particle) const {
   const Domain& domain = parameters_.domain;
   static const char* const axes = "xyz";
-  const auto centre_of = [](const Microparticle& one, const ContactSphere& sphere) -> Vector3d {
-    return one.body.position + one.body.orientation * sphere.offset;
-  };
   for (const ContactSphere& sphere : particle.contact_spheres) {
     const Vector3d centre = centre_of(particle, sphere);
     for (int axis = 0; axis < 3; ++axis) {
@@ -142,6 +160,11 @@ void Microparticles::require_room(const Microparticle& particle) const {
             "microparticle: center's {} {:.6g}, allowed: {:.6g} to {:.6g} for a radius of {} (r_c)",
             axes[axis], centre[axis], from, to, sphere.radius));
     }
+    if (const double distance = distance_to(solid_, centre, sphere.radius); distance < 0.99 * sphere.radius)
+      throw InvalidInput(fmt::format(
+          "microparticle: its centre ({:.6g}, {:.6g}, {:.6g}) is {:.4g} r_c from the label grid's "
+          "solid, allowed: its radius of {} or more",
+          centre.x(), centre.y(), centre.z(), distance, sphere.radius));
     for (const Microparticle& other : all_)
       for (const ContactSphere& its : other.contact_spheres) {
         const double distance = domain.nearest_image(centre - centre_of(other, its)).norm();
@@ -194,6 +217,7 @@ BodyDriftReport Microparticles::drift() {
     if (!(way < largest_step)) report.wild = particle.id;
     body.position += dt * centre_velocity;
     body.turn(dt);
+    if (is_in_solid(particle)) report.wild = particle.id;
     place_beads(particle, centre_velocity);
   }
   for (std::size_t k = 0; k < beads_.size(); ++k)
@@ -218,7 +242,7 @@ void Microparticles::finish(const BodyForces& far) {
     }
     particle.force += particle.body.mass * far.gravity;
     if (particle.placement.magnetic) particle.force += far.magnetic;
-    touch_sides(particle);
+    touch_walls(particle);
     particle.totals.drive_force += drive;
   }
   touch_each_other();
@@ -228,43 +252,61 @@ void Microparticles::finish(const BodyForces& far) {
     MicroparticleTotals& totals = particle.totals;
     ++totals.steps;
     totals.height += particle.body.position.z() - parameters_.domain.lower.z();
-    bool on_lower_plate = false;
+    bool stands = false;
     for (const WallContact& contact : particle.contacts)
-      if (contact.arm.z() < 0) {
-        on_lower_plate = true;
-        totals.normal_force += contact.normal_force;
+      if (contact.normal.z() > 0) {
+        stands = true;
+        totals.normal_force += contact.normal_force * contact.normal.z();
       }
-    totals.steps_in_contact += on_lower_plate ? 1 : 0;
+    totals.steps_in_contact += stands ? 1 : 0;
   }
 }
 
-void Microparticles::touch_sides(Microparticle& particle) {
-  const Domain& domain = parameters_.domain;
+void Microparticles::touch_walls(Microparticle& particle) {
   particle.contacts.clear();
   for (const ContactSphere& sphere : particle.contact_spheres) {
     const Vector3d arm = particle.body.orientation * sphere.offset;
-    const Vector3d centre = particle.body.position + arm;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (domain.periodic(axis)) continue;
-      for (const int side : {1, -1}) {
-        const double distance =
-            side > 0 ? centre[axis] - domain.lower[axis] : domain.upper[axis] - centre[axis];
-        if (distance >= sphere.radius) continue;
-        const MicroparticleParameters& model = parameters_.microparticles;
-        const Vector3d to_contact = arm - side * distance * Vector3d::Unit(axis);
-        const Vector3d velocity = particle.body.velocity + particle.body.angular_velocity().cross(to_contact);
-        const double normal =
-            damped_hertz_force(model.elastic_modulus, sphere.radius, sphere.radius - distance,
-                               particle.body.mass, model.contact_damping, side * velocity[axis]);
-        const Vector3d force = side * normal * Vector3d::Unit(axis);
-        particle.force += force;
-        particle.torque += to_contact.cross(force);
-        // Sides that are no plates only keep things in: no friction.
-        if (axis == 2 && (side > 0 ? domain.has_wall() : domain.has_top_plate()))
-          particle.contacts.push_back({to_contact, sphere.radius, normal});
-      }
+    touch_sides(particle, sphere, arm);
+    if (!solid_.empty()) touch_solid(particle, sphere, arm);
+  }
+}
+
+void Microparticles::touch_sides(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm) {
+  const Domain& domain = parameters_.domain;
+  const Vector3d centre = particle.body.position + arm;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (domain.periodic(axis)) continue;
+    for (const int side : {1, -1}) {
+      const double distance =
+          side > 0 ? centre[axis] - domain.lower[axis] : domain.upper[axis] - centre[axis];
+      if (distance >= sphere.radius) continue;
+      const WallContact contact = press(particle, sphere, arm, side * Vector3d::Unit(axis), distance);
+      // Sides that are no plates only keep things in: no friction.
+      if (axis == 2 && (side > 0 ? domain.has_wall() : domain.has_top_plate()))
+        particle.contacts.push_back(contact);
     }
   }
+}
+
+void Microparticles::touch_solid(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm) {
+  touches_.clear();
+  solid_.append_touches(particle.body.position + arm, sphere.radius, touches_);
+  for (const SolidTouch& touch : touches_)
+    particle.contacts.push_back(press(particle, sphere, arm, touch.normal, touch.distance));
+}
+
+WallContact Microparticles::press(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm,
+                                  const Vector3d& normal, double distance) const {
+  const MicroparticleParameters& model = parameters_.microparticles;
+  const RigidBody& body = particle.body;
+  const Vector3d to_contact = arm - distance * normal;
+  const Vector3d velocity = body.velocity + body.angular_velocity().cross(to_contact);
+  const double magnitude = damped_hertz_force(model.elastic_modulus, sphere.radius, sphere.radius - distance,
+                                              body.mass, model.contact_damping, normal.dot(velocity));
+  const Vector3d force = magnitude * normal;
+  particle.force += force;
+  particle.torque += to_contact.cross(force);
+  return {to_contact, normal, sphere.radius, magnitude};
 }
 
 void Microparticles::touch_each_other() {

@@ -9,6 +9,7 @@
 #include "engine/bodies/rigid_body.h"
 #include "engine/microparticle.h"
 #include "engine/parameters.h"
+#include "engine/walls/solid.h"
 
 namespace dmf::engine {
 
@@ -60,8 +61,8 @@ struct BodyDriftReport {
   std::uint32_t wild = 0;                  ///< id of one that moved too far in this step, or not to a number
 };
 
-/// All microparticles: rigid bodies that liquid and plates push and pull bead by bead, and that touch the
-/// plates and each other (contact.h).
+/// All microparticles: rigid bodies that liquid and walls push and pull bead by bead, and that touch plates,
+/// the solid of a label grid and each other (contact.h).
 class Microparticles {
  public:
   explicit Microparticles(const Parameters& parameters);
@@ -99,12 +100,20 @@ class Microparticles {
 
  private:
   void require_room(const Microparticle& particle) const;
+  bool is_in_solid(const Microparticle& particle) const;
   void append_beads(const Microparticle& particle);
   void place_beads(const Microparticle& particle, const Vector3d& centre_velocity);
-  void touch_sides(Microparticle& particle);
+  void touch_walls(Microparticle& particle);
+  void touch_sides(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm);
+  void touch_solid(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm);
+  /// @param arm  from the centre of mass to the sphere's. @returns the contact, whose forces act now.
+  WallContact press(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm,
+                    const Vector3d& normal, double distance) const;
   void touch_each_other();
 
   Parameters parameters_;
+  Solid solid_;
+  std::vector<SolidTouch> touches_;  ///< reused
   std::uint32_t next_id_ = 1;
   std::vector<Microparticle> all_;
   BodyBeads beads_;

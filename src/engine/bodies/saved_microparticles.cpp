@@ -54,15 +54,15 @@ void archive_motion(Archive& archive, Microparticle& particle) {
   archive(particle.torque);
   std::uint64_t contacts = particle.contacts.size();
   archive(contacts);
-  if (archive.reading()) {
-    if (contacts > 2 * particle.contact_spheres.size())
-      throw InvalidInput("saved state: a microparticle touches the wall too often");
-    particle.contacts.resize(contacts);
-  }
+  archive.require_left(contacts, 8 * sizeof(double));
+  if (archive.reading()) particle.contacts.resize(contacts);
   for (WallContact& contact : particle.contacts) {
     archive(contact.arm);
+    archive(contact.normal);
     archive(contact.radius);
     archive(contact.normal_force);
+    if (!(std::abs(contact.normal.squaredNorm() - 1) < 1e-9))
+      throw InvalidInput("saved state: a microparticle touches a wall that faces nowhere");
   }
   archive_totals(archive, particle.totals);
   archive_totals(archive, particle.last_look);

@@ -70,11 +70,15 @@ void check_shell(const MicroparticlePlacement& placement, Violations& check) {
 
 void check_contact(const MicroparticlePlacement& placement, const Parameters& parameters, Violations& check) {
   const MicroparticleParameters& model = parameters.microparticles;
-  if (!parameters.domain.has_wall() || model.wall_attraction == 0) return;
+  const bool meets_wall = parameters.domain.has_wall() || parameters.label_grid.grid;
+  if (!meets_wall || model.wall_attraction == 0) return;
   const double radius = placement.points.empty() ? placement.radius : extent(placement);
   const double beads_per_area =
       placement.smooth ? usual_beads_per_area : bead_count(placement) / (4 * pi * radius * radius);
-  const double load = wall_adhesion(model.wall_attraction, radius, beads_per_area, parameters.wall);
+  WallParameters wall = parameters.wall;  // the denser one's
+  if (parameters.label_grid.grid)
+    wall.lattice_constant = std::min(wall.lattice_constant, parameters.label_grid.lattice_constant);
+  const double load = wall_adhesion(model.wall_attraction, radius, beads_per_area, wall);
   const double mass = mass_of(placement);
   const double largest = largest_elastic_modulus(mass, placement.radius, load, parameters.time_step);
   // sqrt(k / m) time_step grows with E^(1/3).
@@ -95,8 +99,6 @@ std::vector<std::string> violations(const MicroparticlePlacement& placement, con
   check.unless(placement.center.allFinite() && std::isfinite(placement.z.value_or(0)),
                "center: ({}, {}, {}), allowed: finite numbers", placement.center.x(), placement.center.y(),
                placement.z.value_or(0));
-  check.unless(!parameters.label_grid.grid,
-               "microparticle: with a label grid, allowed: without one (its contact knows plates only)");
   check.unless(within(placement.radius, 0.5, 20), "radius: {}, allowed: 0.5 to 20 (r_c)", placement.radius);
   check.unless(placement.points.size() <= largest_bead_count, "points: {}, allowed: up to {}",
                placement.points.size(), largest_bead_count);

@@ -65,6 +65,45 @@ float Solid::free_fraction(const Eigen::Vector3f& from, const Eigen::Vector3f& w
   }
 }
 
+void Solid::append_touches(const Vector3d& centre, double radius, std::vector<SolidTouch>& touches) const {
+  if (!grid_ || contains(centre.cast<float>())) return;
+  const Vector3d &origin = grid_->origin, &size = grid_->voxel_size;
+  Cell first, last;
+  for (int axis = 0; axis < 3; ++axis) {
+    first[axis] = static_cast<int>(std::floor((centre[axis] - radius - origin[axis]) / size[axis]));
+    last[axis] = static_cast<int>(std::floor((centre[axis] + radius - origin[axis]) / size[axis]));
+  }
+  for (int z = first[2]; z <= last[2]; ++z)
+    for (int y = first[1]; y <= last[1]; ++y)
+      for (int x = first[0]; x <= last[0]; ++x) {
+        const Cell cell{x, y, z};
+        if (!is_solid(cell)) continue;
+        // Not lower + size: the upper side of one voxel is the lower one of the next to the last bit.
+        const Vector3d lower = origin + size.cwiseProduct(Vector3d(x, y, z)),
+                       upper = origin + size.cwiseProduct(Vector3d(x + 1, y + 1, z + 1));
+        const Vector3d way = centre - centre.cwiseMax(lower).cwiseMin(upper);
+        const double distance = way.norm();
+        if (!(distance < radius) || distance == 0) continue;
+        // Whose sides the centre is beyond; on the side itself beyond the upper one, so that of two voxels
+        // with a common side only one is below it.
+        Cell beyond;
+        for (int axis = 0; axis < 3; ++axis)
+          beyond[axis] = centre[axis] < lower[axis] ? -1 : centre[axis] >= upper[axis] ? 1 : 0;
+        if (sticks_out(cell, beyond)) touches.push_back({way / distance, distance});
+      }
+}
+
+bool Solid::sticks_out(const Cell& cell, const Cell& beyond) const {
+  for (int z = 0; z <= std::abs(beyond[2]); ++z)
+    for (int y = 0; y <= std::abs(beyond[1]); ++y)
+      for (int x = 0; x <= std::abs(beyond[0]); ++x) {
+        if (x + y + z == 0) continue;
+        if (is_solid({cell[0] + x * beyond[0], cell[1] + y * beyond[1], cell[2] + z * beyond[2]}))
+          return false;
+      }
+  return true;
+}
+
 Vector3d Solid::normal(const Vector3d& at) const {
   if (!grid_) return Vector3d::Zero();
   const Cell middle = cell_of(at.cast<float>());
