@@ -340,18 +340,21 @@ def plot_structured_wall(folder):
 
 
 def plot_infiltration(folder):
-    """Share of the pore space that is filled, over time."""
+    """Share of the pore space that is filled, over time; a colour a case, a line a seed."""
     paths = sorted(glob.glob(os.path.join(folder, "infiltration_*_seed*.csv")))
     if not paths:
         sys.exit("%s: no run of infiltration" % folder)
-    figure, axis = plt.subplots(figsize=(7, 4.5), constrained_layout=True)
+    figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
+    colors = {}
     for path in paths:
         table = columns_of(path)
-        label = os.path.basename(path)[len("infiltration_"):-len(".csv")].replace("_", " ")
-        axis.plot(table["time"], table["filled"], label=label)
+        case = os.path.basename(path)[len("infiltration_"):].rpartition("_seed")[0].replace("_", " ")
+        label = case if case not in colors else None
+        color = colors.setdefault(case, "C%d" % len(colors))
+        axis.plot(table["time"], table["filled"], color=color, label=label)
     axis.set_xlabel(r"time ($\tau$)")
     axis.set_ylabel("filled share of the pore space")
-    axis.legend(fontsize=8)
+    axis.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return figure
 
 
