@@ -339,6 +339,31 @@ def plot_structured_wall(folder):
     return figure
 
 
+def plot_constriction(folder):
+    """How long the cell is, how fast, and what it keeps of its area and volume, on its way through the throat; a line a seed."""
+    paths = sorted(glob.glob(os.path.join(folder, "constriction_*_seed*.csv")))
+    if not paths:
+        sys.exit("%s: no run of constriction" % folder)
+    figure, (shape, speed, kept) = plt.subplots(3, 1, figsize=(7, 7.5), constrained_layout=True, sharex=True)
+    for index, path in enumerate(paths):
+        table = columns_of(path)
+        color = "C%d" % index
+        shape.plot(table["x"], table["length"], color=color, label="length" if index == 0 else None)
+        shape.plot(table["x"], table["width"], "--", color=color, label="width" if index == 0 else None)
+        speed.plot(table["x"], np.gradient(table["x"], table["time"]), color=color)
+        kept.plot(table["x"], table["area"], color=color, label="area" if index == 0 else None)
+        kept.plot(table["x"], table["volume"], "--", color=color, label="volume" if index == 0 else None)
+    for axis in (shape, speed, kept):
+        axis.axvspan(-4, 4, color="0.9")
+    shape.set_ylabel("extent ($r_c$)")
+    speed.set_ylabel(r"speed of its centre ($r_c/\tau$)")
+    kept.set_ylabel("of that when placed")
+    kept.set_xlabel("its centre, x ($r_c$); grey: the throat")
+    shape.legend(fontsize=8)
+    kept.legend(fontsize=8)
+    return figure
+
+
 def plot_infiltration(folder):
     """Share of the pore space that is filled, over time; a colour a case, a line a seed."""
     paths = sorted(glob.glob(os.path.join(folder, "infiltration_*_seed*.csv")))
@@ -365,6 +390,18 @@ def place_of(case):
     return (" ".join(words[:-1]), name, number(value)) if value and math.isfinite(number(value)) else (case, "", math.nan)
 
 
+def series_of(found):
+    """The findings of a panel by series: points along one value that the cases differ by, or every case by its name."""
+    series = {}
+    for row in found:
+        label, axis_name, place = place_of(row["case"])
+        series.setdefault((label, axis_name), []).append((place, row))
+    one_axis = len({axis_name for _, axis_name in series}) == 1
+    if one_axis and any(len({place for place, _ in points}) > 1 for points in series.values()):
+        return series
+    return {(row["case"], ""): [(math.nan, row)] for row in found}
+
+
 def plot_findings(folder, name):
     """A panel a quantity: ours with spread over what is varied, the paper's numbers as stars, theory as lines."""
     panels = {}
@@ -381,11 +418,8 @@ def plot_findings(folder, name):
     for axis in axes.flat[len(panels):]:
         axis.remove()
     for axis, ((_, title), found) in zip(axes.flat, panels.items()):
-        series = {}
-        for row in found:
-            label, axis_name, place = place_of(row["case"])
-            series.setdefault((label, axis_name), []).append((place, row))
         names = []
+        series = series_of(found)
         for index, ((label, axis_name), points) in enumerate(series.items()):
             if not all(math.isfinite(place) for place, _ in points):
                 points = [(len(names), row) for _, row in points]
@@ -395,7 +429,7 @@ def plot_findings(folder, name):
             else:
                 points.sort(key=lambda point: point[0])
                 axis.set_xlabel(axis_name)
-                label = label or axis_name if len(series) > 1 else "here"
+                label = label or axis_name
             colour = "C%d" % (index % 10)
             place = [point[0] for point in points]
             values = {key: np.array([row[key] for _, row in points])
@@ -406,7 +440,7 @@ def plot_findings(folder, name):
             axis.plot(place, values["theory"], "_" if len(place) == 1 else "-", color=colour, linewidth=0.8)
         axis.set_title(title, fontsize=9)
         axis.grid(alpha=0.3)
-        if not names:
+        if not names and len(series) > 1:
             axis.legend(fontsize=7)
     figure.suptitle("%s: dots ours, stars the paper's, lines theory" % name, fontsize=10)
     return figure
@@ -421,6 +455,7 @@ FIGURES = {
     "sloping_channel": plot_sloping_channel,
     "structured_wall": plot_structured_wall,
     "infiltration": plot_infiltration,
+    "constriction": plot_constriction,
 }
 
 
