@@ -214,10 +214,10 @@ BodyDriftReport Microparticles::drift() {
     const Vector3d centre_velocity = body.velocity + friction.rolling;
     const double way =
         dt * (centre_velocity.norm() + particle.bounding_radius * body.angular_velocity().norm());
-    if (!(way < largest_step)) report.wild = particle.id;
+    const bool too_far = !(way < largest_step);
     body.position += dt * centre_velocity;
     body.turn(dt);
-    if (is_in_solid(particle)) report.wild = particle.id;
+    if (too_far || is_in_solid(particle)) report.wild = particle.id;
     place_beads(particle, centre_velocity);
   }
   for (std::size_t k = 0; k < beads_.size(); ++k)
