@@ -110,7 +110,7 @@ Finding Results::derived(const std::string& label, const std::string& quantity, 
   std::set<std::string> commits;
   for (const int seed : table_->seeds_of(name_of(label))) {
     const ResultRow& row = table_->row(fmt::format("{} seed={}", name_of(label), seed));
-    seconds.push_back(row.computing);
+    if (std::isfinite(row.computing)) seconds.push_back(row.computing);  // of those that were timed
     if (!row.engine.empty()) commits.insert(row.engine);
   }
   finding.computing = seconds.empty() ? NAN : mean_and_spread(seconds).mean;

@@ -31,7 +31,7 @@ struct Finding {
   Reference paper, theory;
   /// Off by no more than `tolerance` of the reference, or than `margin`, still agrees.
   double tolerance = 0.05, margin = 0;
-  double computing = 0;             ///< mean processor time of a run, s; NaN: not recorded
+  double computing = 0;             ///< mean processor time of the runs that were timed, s; NaN: none was
   std::vector<std::string> engine;  ///< commits that the runs were made with, each once
 
   Finding& against_paper(Reference reference);
