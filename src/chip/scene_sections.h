@@ -39,8 +39,7 @@ std::optional<SceneBoard> read_board(const engine::YamlReader& root, Scene& scen
 /// `units`: by default those of water whose r_c is 10 um, or what the board's resolution makes of it.
 engine::Units read_units(const engine::YamlReader& root, const engine::LiquidParameters& liquid,
                          const std::optional<SceneBoard>& board);
-/// Wall, domain and how to compute; then checks every range of the engine. A board
-/// has a domain of its own.
+/// Wall, domain and how to compute; then checks every range of the engine. A board has a domain of its own.
 void read_engine(const engine::YamlReader& root, engine::Parameters& parameters,
                  const std::optional<SceneBoard>& board);
 /// The domain of a board for which the scene gives none.
