@@ -281,9 +281,8 @@ engine::MicroparticlePlacement placement_of(const AddMicroparticle& command, con
     body.z = scene.parameters.domain.lower.z() + body.radius - lowest + command.height / units.length_m;
   }
   if (command.mass) body.mass = *command.mass / units.mass_kg;
-  body.attraction = command.contact_angle_deg
-                        ? load_microparticle_curve(scene).attraction(*command.contact_angle_deg)
-                        : command.attraction;
+  body.attraction = command.contact_angle_deg ? microparticle_attraction(scene, *command.contact_angle_deg)
+                                              : command.attraction;
   body.static_friction = command.static_friction;
   body.kinetic_friction = command.kinetic_friction;
   body.rolling_friction = command.rolling_friction;

@@ -163,6 +163,14 @@ engine::ContactAngleCurve load_microparticle_curve(const Scene& scene) {
   return engine::ContactAngleCurve::parse(file.text, file.path);
 }
 
+double microparticle_attraction(const Scene& scene, double contact_angle_deg) {
+  if (scene.parameters.dimensions == 2)
+    throw engine::InvalidInput(
+        "a microparticle's contact angle with dimensions: 2, allowed: attraction, for calibrations are of "
+        "three dimensions");
+  return load_microparticle_curve(scene).attraction(contact_angle_deg);
+}
+
 Scene load_scene(const std::string& file) {
   SceneFiles files;
   files.keep(

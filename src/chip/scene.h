@@ -84,6 +84,10 @@ engine::ContactAngleCurve load_curve(const Scene& scene);
 /// when a contact angle is asked for. @throws engine::InvalidInput when its file can't be read.
 engine::ContactAngleCurve load_microparticle_curve(const Scene& scene);
 
+/// A_ls of a microparticle on which the liquid shows a contact angle, degrees, by that relation.
+/// @throws engine::InvalidInput for an angle outside it, and with two dimensions, for which none is measured.
+double microparticle_attraction(const Scene& scene, double contact_angle_deg);
+
 /// Reads a scene; docs/scene_format.md lists the keys. Lengths, times, angles, voltages are numbers in
 /// reduced units (r_c, tau), degrees and volts, or text with a unit ("1.5 mm", "20 um", "5 ms", "63 V", "150
 /// deg").

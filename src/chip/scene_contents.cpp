@@ -83,11 +83,10 @@ void read_droplets(const YamlReader& root, Scene& scene) {
 
 void read_microparticles(const YamlReader& root, Scene& scene) {
   scene.microparticle_calibration = kDefaultMicroparticleCalibration;
-  std::optional<engine::ContactAngleCurve> curve;
   bool sound = true;
   if (const auto model = root.optional_mapping("microparticle_model"); model && model->has("calibration")) {
     scene.microparticle_calibration = model->text("calibration");
-    sound = attempt(*model, "calibration", [&] { curve = load_microparticle_curve(scene); });
+    sound = attempt(*model, "calibration", [&] { load_microparticle_curve(scene); });
   }
   if (scene.microparticle_calibration != kLanFormula) try {
       // A command may ask for a contact angle later. Without the file only those that do are refused.
@@ -100,10 +99,8 @@ void read_microparticles(const YamlReader& root, Scene& scene) {
     const auto centre = section.quantities("center", Dimension::length, {}, {2, 3});
     WrittenMicroparticle written = read_microparticle(section);
     if (written.contact_angle && sound) {
-      attempt(section, "contact_angle", [&] {
-        if (!curve) curve = load_microparticle_curve(scene);
-        written.body.attraction = curve->attraction(*written.contact_angle);
-      });
+      attempt(section, "contact_angle",
+              [&] { written.body.attraction = microparticle_attraction(scene, *written.contact_angle); });
     }
     if (centre.size() < 2) continue;
     written.body.center = {centre[0], centre[1]};

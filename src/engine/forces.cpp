@@ -58,13 +58,14 @@ PairPass Forces::pass_over(Beads& beads, const Walls& wall, Microparticles& bodi
   pass.bodies.position = bodies.beads().position.data();
   pass.bodies.moving = bodies.beads().moving.data();
   pass.bodies.own_density = bodies.beads().own_density.data();
+  pass.bodies.key = bodies.beads().key.data();
   pass.bodies.liquid_force = bodies.beads().liquid_force.data();
   pass.bodies.wall_force = bodies.beads().wall_force.data();
   return pass;
 }
 
 void Forces::density(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const {
-  const GhostsInPlace ghosts(pairs.ghosts(), beads);
+  const GhostsInPlace ghosts(pairs.ghosts(), beads, bodies.beads());
   const PairPass pass = pass_over(beads, wall, bodies);
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
@@ -76,7 +77,8 @@ void Forces::density(Beads& beads, const Walls& wall, Microparticles& bodies, Pa
 }
 
 void Forces::force(Beads& beads, const Walls& wall, Microparticles& bodies, Pairs& pairs) const {
-  force(PairForce::all, beads.force, beads, wall, bodies, pairs);
+  const GhostsInPlace ghosts(pairs.ghosts(), beads, bodies.beads());
+  sum(PairForce::all, beads.force, beads, wall, bodies, pairs);
   const PairPass pass = pass_over(beads, wall, bodies);
   const std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
 #pragma omp parallel for schedule(dynamic, 1) if (!of_bodies.empty())
@@ -86,8 +88,13 @@ void Forces::force(Beads& beads, const Walls& wall, Microparticles& bodies, Pair
 
 void Forces::force(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall,
                    Microparticles& bodies, Pairs& pairs) const {
+  const GhostsInPlace ghosts(pairs.ghosts(), beads, bodies.beads());
+  sum(part, to, beads, wall, bodies, pairs);
+}
+
+void Forces::sum(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall,
+                 Microparticles& bodies, const Pairs& pairs) const {
   to.resize(beads.size());
-  const GhostsInPlace ghosts(pairs.ghosts(), beads);
   PairPass pass = pass_over(beads, wall, bodies);
   pass.force = to.data();
   const std::vector<NeighbourBlock>& blocks = pairs.blocks();

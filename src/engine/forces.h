@@ -32,6 +32,9 @@ class Forces {
 
  private:
   PairPass pass_over(Beads& beads, const Walls& wall, Microparticles& bodies) const;
+  /// Of the liquid. @pre images are in place.
+  void sum(PairForce part, AlignedVector<Record>& to, Beads& beads, const Walls& wall, Microparticles& bodies,
+           const Pairs& pairs) const;
 
   Kernels kernels_;
   std::string kernel_name_;

@@ -46,16 +46,14 @@ float wrapped(float position, double lower, double period) {
 
 }  // namespace
 
-/// Consecutive beads of a microparticle, and where they were when the liquid was sorted.
-struct BodyPatch {
-  std::uint32_t begin, end;
-  Bounds bounds;
-};
-
-/// All patches of a microparticle: most cells are near none of them.
+/// All patches of a microparticle or of an image of it: most cells are near none of them.
 struct PatchedBody {
-  std::vector<BodyPatch> patches;
+  std::vector<Ghosts::Patch> patches;
   Bounds bounds;
+
+  explicit PatchedBody(std::vector<Ghosts::Patch> of) : patches(std::move(of)) {
+    for (const Ghosts::Patch& patch : patches) bounds.include(Bounds{patch.lower, patch.upper});
+  }
 };
 
 Pairs::Pairs(const Parameters& parameters)
@@ -94,7 +92,7 @@ void Pairs::rebuild(Beads& beads, const Walls& wall) {
   grid_.sort(beads.position.data(), beads.size(), order_);
   beads.reorder(order_);
   beads.listed = beads.position;
-  ghosts_.list(beads.listed, range_);
+  ghosts_.list(beads.listed, range_, protrusion_, false);
   find_neighbourhoods(beads.listed, wall);
   ++builds_;
 }
@@ -105,7 +103,7 @@ void Pairs::restore(const Beads& beads, const Walls& wall) {
   grid_.sort(beads.listed.data(), beads.size(), order_);
   if (!std::is_sorted(order_.begin(), order_.end()))
     throw InvalidInput("saved state: its beads are sorted into other cells than these parameters make");
-  ghosts_.list(beads.listed, range_, true);
+  ghosts_.list(beads.listed, range_, protrusion_, true);
   find_neighbourhoods(beads.listed, wall);
 }
 
@@ -162,7 +160,7 @@ void Pairs::find_runs(NeighbourBlock& block, NeighbourCell& cell, const AlignedV
   };
   cell.first_run = static_cast<std::uint32_t>(block.runs.size());
   append_runs(grid_, domain_, around.lower, around.upper, block.runs);
-  ghosts_.append_runs(around.lower, around.upper, static_cast<std::uint32_t>(listed.size()), block.runs);
+  ghosts_.append_runs(around.lower, around.upper, block.runs);
   cell.end_run = static_cast<std::uint32_t>(block.runs.size());
   note_new(block.runs, cell.first_run, block.slots);
   cell.first_wall_run = static_cast<std::uint32_t>(block.wall_runs.size());
@@ -184,10 +182,11 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
       smooth_neighbours_.push_back({k, {}, {}});
       append_runs(grid_, domain_, centre.array() - reach, centre.array() + reach,
                   smooth_neighbours_.back().liquid);
+      ghosts_.append_runs(centre.array() - reach, centre.array() + reach, smooth_neighbours_.back().liquid);
       wall.append_runs(centre.array() - reach, centre.array() + reach, smooth_neighbours_.back().wall);
       continue;
     }
-    PatchedBody& body = patched.emplace_back();
+    std::vector<Ghosts::Patch> patches;
     std::uint32_t begin = particle.first_bead;
     for (const std::uint32_t patch_end : particle.patch_ends) {
       if (begin == particle.first_bead || begin - body_blocks_.back().begin >= block_size) {
@@ -201,10 +200,12 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
       find_runs(block, patch, bodies.beads().listed, wall);
       most = std::max({most, block.slots, block.wall_slots});
       block.cells.push_back(patch);
-      body.patches.push_back(
-          {patch.begin, patch.end, bounds_of(bodies.beads().listed, patch.begin, patch.end)});
-      body.bounds.include(body.patches.back().bounds);
+      const Bounds bounds = bounds_of(bodies.beads().listed, patch.begin, patch.end);
+      patches.push_back({patch.begin, patch.end, bounds.lower, bounds.upper});
     }
+    for (std::vector<Ghosts::Patch>& image : ghosts_.list_body(patches, range_, bodies.beads().size()))
+      patched.emplace_back(std::move(image));
+    patched.emplace_back(std::move(patches));
   }
 #pragma omp parallel for schedule(dynamic, 4) reduction(max : most)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -220,7 +221,7 @@ void Pairs::find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const Ali
                            const std::vector<PatchedBody>& bodies) const {
   const Bounds of_cell = bounds_of(listed, cell.begin, cell.end);
   int image[3] = {0, 0, 0};  // of what was asked for last
-  const auto in_reach = [&](const Bounds& other) {
+  const auto in_reach = [&](const auto& other) {
     Eigen::Vector3f apart = 0.5f * (other.lower + other.upper - of_cell.lower - of_cell.upper);
     const Eigen::Vector3f reach = 0.5f * (other.upper - other.lower + of_cell.upper - of_cell.lower);
     for (int axis = 0; axis < 3; ++axis)
@@ -235,8 +236,8 @@ void Pairs::find_body_runs(NeighbourBlock& block, NeighbourCell& cell, const Ali
   std::uint32_t count = 0;
   for (const PatchedBody& body : bodies) {
     if (!in_reach(body.bounds)) continue;
-    for (const BodyPatch& patch : body.patches) {
-      if (!in_reach(patch.bounds)) continue;
+    for (const Ghosts::Patch& patch : body.patches) {
+      if (!in_reach(patch)) continue;
       block.body_runs.push_back(
           {patch.begin, patch.end, PeriodicImages::index(image[0], image[1], image[2])});
       count += patch.end - patch.begin;

@@ -41,6 +41,9 @@ class Pairs {
   /// previous order only. @throws std::length_error when more beads crowd around a cell than slots can
   /// number.
   void rebuild(Beads& beads, const Walls& wall);
+  /// From the next rebuild() on: how far microparticles whose centres are in the box reach beyond sheared
+  /// sides, r_c.
+  void set_protrusion(double protrusion) { protrusion_ = protrusion; }
 
   /// Finds the cells again from `beads.listed`, in the present order: restores a saved state to the bit.
   /// @throws InvalidInput when that is not the order of these cells.
@@ -52,6 +55,7 @@ class Pairs {
   void find_bodies(const Microparticles& bodies, const Beads& beads, const Walls& wall);
 
   void forget_bodies() {
+    ghosts_.forget_bodies();
     body_blocks_.clear();
     smooth_neighbours_.clear();
   }
@@ -79,6 +83,7 @@ class Pairs {
   Ghosts ghosts_;
   Domain domain_;  ///< as ghosts_ want it searched
   double range_;   ///< r_c + skin
+  double protrusion_ = 0;
   float squared_half_skin_;
   bool stale_ = true;
   std::uint64_t builds_ = 0;

@@ -140,6 +140,11 @@ struct Parameters {
   WatchdogParameters watchdog;
   MixtureParameters mixture;  ///< liquids beside `liquid`
   SplineParameters spline;    ///< Liu's conservative force
+
+  /// Whether nothing moves along an axis.
+  bool flat(int axis) const { return dimensions == 2 && axis == 1; }
+  /// y of the plane that all is in, with two dimensions.
+  double plane() const { return 0.5 * (domain.lower.y() + domain.upper.y()); }
 };
 
 /// All violated ranges, each as "key: value, allowed: range". Empty when the parameters are sound.

@@ -26,8 +26,7 @@ struct Lattice {
 
 Lattice lattice_of(const Parameters& parameters, std::uint32_t species) {
   const double density = initial_density(parameters, species);
-  const double middle = 0.5 * (parameters.domain.lower.y() + parameters.domain.upper.y());
-  return parameters.dimensions == 2 ? Lattice{std::sqrt(2.0 / density), 2, middle}
+  return parameters.dimensions == 2 ? Lattice{std::sqrt(2.0 / density), 2, parameters.plane()}
                                     : Lattice{std::cbrt(4.0 / density), 4, 0};
 }
 

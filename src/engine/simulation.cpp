@@ -141,6 +141,7 @@ void Simulation::load_state(const std::string& bytes) {
   loaded->bonds.require_sound(loaded->beads);
   omp_set_num_threads(s.threads);
   try {
+    loaded->pairs.set_protrusion(loaded->microparticles.largest_bounding_radius());
     loaded->pairs.restore(loaded->beads, loaded->wall);
     loaded->advance_images(0);
     loaded->pairs.find_bodies(loaded->microparticles, loaded->beads, loaded->wall);

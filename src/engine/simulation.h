@@ -123,7 +123,6 @@ class Simulation {
   std::size_t place(const std::vector<Vector3d>& sites, std::uint32_t species);
   std::vector<std::uint32_t> take(const std::vector<Vector3d>& sites,
                                   const std::vector<std::uint8_t>& species);
-  void require_bonds_allowed() const;
   void refresh();
 
   struct State;

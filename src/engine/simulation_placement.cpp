@@ -47,18 +47,11 @@ std::vector<std::uint32_t> Simulation::take(const std::vector<Vector3d>& sites,
   State& s = *state_;
   s.require_room_for_bonded(static_cast<double>(sites.size()));
   s.microparticles.require_clear(sites);
-  return take_sites(s.beads, sites, species, s.bonds, s.parameters, s.step, s.next_bead_id);
-}
-
-void Simulation::require_bonds_allowed() const {
-  const State& s = *state_;
-  if (s.parameters.dimensions == 2 || s.pairs.ghosts().needed())
-    throw InvalidInput(
-        "bonds: with dimensions: 2, symmetric sides or a shear rate, allowed: in three dimensions without");
+  return take_sites(s.beads, sites, species, s.bonds, s.parameters, s.pairs.ghosts().images(), s.step,
+                    s.next_bead_id);
 }
 
 std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
-  require_bonds_allowed();
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
   s.require_room_for_bonded(placement.points.empty() ? 1.0 * placement.count * placement.beads : 0.0);
@@ -83,7 +76,6 @@ std::uint32_t Simulation::add_chains(const ChainPlacement& placement) {
 }
 
 std::uint32_t Simulation::add_membrane(const MembranePlacement& placement) {
-  require_bonds_allowed();
   State& s = *state_;
   require_sound(violations(placement, s.parameters));
   const std::vector<Vector3d>& sites = placement.mesh->vertices;
@@ -117,11 +109,6 @@ void Simulation::remove_droplet(std::uint32_t id) {
 }
 std::uint32_t Simulation::add_microparticle(const MicroparticlePlacement& placement) {
   State& s = *state_;
-  const BoundaryParameters& boundaries = s.parameters.boundaries;
-  if (s.parameters.dimensions == 2 || boundaries.moving() || s.pairs.ghosts().needed())
-    throw InvalidInput(
-        "microparticle: with dimensions: 2, sides that move or are symmetric, or a shear rate, allowed: in "
-        "three dimensions without");
   const std::size_t told = std::max<std::size_t>({1, placement.beads, placement.points.size()});
   require_memory(s.parameters, static_cast<double>(s.beads.size()),
                  static_cast<double>(s.microparticles.beads().size() + told),

@@ -90,9 +90,11 @@ struct Simulation::State {
                                        key, value.x(), value.y(), value.z(), allowed, unit));
     };
     check("body_forces.gravity", forces.gravity, largest, "r_c / tau^2");
-    if (parameters.dimensions == 2 && forces.gravity.y() != 0)
-      throw InvalidInput(
-          fmt::format("body_forces.gravity: {} along y, allowed: 0 with dimensions: 2", forces.gravity.y()));
+    for (const auto& [key, force] :
+         {std::pair("gravity", forces.gravity), std::pair("magnetic", forces.magnetic)})
+      if (parameters.dimensions == 2 && force.y() != 0)
+        throw InvalidInput(
+            fmt::format("body_forces.{}: {} along y, allowed: 0 with dimensions: 2", key, force.y()));
     double lightest = std::numeric_limits<double>::infinity();
     for (const Microparticle& particle : microparticles.all())
       if (particle.placement.magnetic) lightest = std::min(lightest, particle.body.mass);
@@ -139,6 +141,8 @@ struct Simulation::State {
   void advance_images(double moved) {
     if (!pairs.ghosts().needed()) return;
     pairs.ghosts().advance((static_cast<double>(step) + moved) * parameters.time_step, step);
+    microparticles.set_images(pairs.ghosts().images());
+    bonds.set_images(pairs.ghosts().images());
   }
 
   /// After every move: stops a run that jumped, sorts beads anew when cells may miss a pair.
@@ -151,6 +155,7 @@ struct Simulation::State {
 
   void find_pairs() {
     try {
+      pairs.set_protrusion(microparticles.largest_bounding_radius());
       pairs.rebuild(beads, wall);
       if (!bonds.empty()) bonds.find(beads);
       if (microparticles.empty()) return pairs.forget_bodies();
@@ -175,7 +180,7 @@ struct Simulation::State {
   }
 
   void look() {
-    tracker.update(step, beads, pairs.blocks(), solvents(beads, pairs.blocks(), bonds));
+    tracker.update(step, beads, pairs, solvents(beads, pairs, bonds));
     carriage.update(step, microparticles, beads, pairs, parameters, tracker);
     microparticles.note_look();
   }
@@ -206,15 +211,15 @@ struct Simulation::State {
     seen.friction_force = particle.means.friction_force;
     seen.immersion = carried.immersion;
     seen.droplet = carried.droplet;
-    seen.place = place_in(carried, particle.body.position, tracker.droplets(), parameters.domain);
+    seen.place = place_in(carried, particle.body.position, tracker.droplets(), pairs.ghosts().images());
     seen.totals = particle.totals;
     return seen;
   }
 
   void archive(Archive& archive) {
     // 1: beads in the order of neighbour lists. 2: no microparticles. 3: not whence the vapour is. 4: one
-    // liquid, no bonds, no sheared sides.
-    constexpr std::uint64_t current = 5;
+    // liquid, no bonds, no sheared sides. 5: microparticles touch plates only, which rest.
+    constexpr std::uint64_t current = 6;
     std::uint64_t format = current;
     // What a bead takes below, and a profile a droplet.
     if (!archive.reading()) archive.reserve(90 * beads.size() + 4 * wall.size() + (1u << 16));

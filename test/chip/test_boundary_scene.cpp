@@ -109,5 +109,32 @@ TEST(BoundaryScene, WhatDoesNotGoTogetherIsToldWithItsKey) {
                     "wall.attraction"));
 }
 
+TEST(BoundaryScene, BodiesGoWithSidesThatAreShearedSymmetricOrMoveAndWithTwoDimensions) {
+  const std::string bodies =
+      "microparticles: [{center: [4, 4, 4], radius: 1}]\n"
+      "chains: [{spring: {kind: harmonic, stiffness: 50, length: 0.5}, beads: 6}]\n";
+  for (const char* sides :
+       {"sides: {x: periodic, y: periodic, z: periodic}}\nboundaries: {shear_rate: 0.1}\n",
+        "sides: {x: periodic, y: periodic, z: closed}}\nboundaries: {lower_z: symmetric}\n",
+        "sides: {x: periodic, y: periodic, z: plates}}\nboundaries: {upper_velocity: [0.1, 0]}\n",
+        "sides: {x: periodic, z: periodic}}\ndimensions: 2\n"}) {
+    const std::string scene = "domain: {lower: [0, 0, 0], upper: [9, 9, 9], " + std::string(sides) + bodies +
+                              "fills: [{lower: [0, 0, 0], upper: [9, 9, 9]}]\nwatchdog: {evaporation: 1}\n";
+    Experiment experiment(parse(scene), {1, "auto"});
+    for (int k = 0; k < 60; ++k) experiment.step();
+    Experiment other(parse(scene), {1, "auto"});
+    other.load(experiment.save());
+    experiment.step();
+    other.step();
+    EXPECT_EQ(experiment.save(), other.save()) << sides;
+    EXPECT_EQ(experiment.observe()->chains.size(), 1u);
+  }
+  const std::string flat = "domain: {lower: [0, 0, 0], upper: [9, 9, 9]}\ndimensions: 2\n";
+  EXPECT_TRUE(holds(refused(flat + "microparticles: [{center: [4, 4], radius: 1, contact_angle: 100}]"),
+                    "contact angle with dimensions: 2, allowed: attraction"));
+  EXPECT_TRUE(holds(refused(flat + "membranes: [{center: [4, 4, 4], radius: 3}]"),
+                    "membrane: with dimensions: 2, allowed: a chain"));
+}
+
 }  // namespace
 }  // namespace dmf::chip

@@ -207,6 +207,27 @@ TEST(Contact, RollsDownATiltedPlateWithThreeFifthsOfTheAcceleration) {
   EXPECT_NEAR(rolled.angular_velocity.y(), rolled.velocity.x(), 0.01);
 }
 
+TEST(Contact, APlateThatMovesTakesItAlong) {
+  // Friction gives the impulse that ends the sliding: v = u / (1 + m R^2 / I), and turns it by the rest of u.
+  // Without a torque it stops when it is as fast as the plate.
+  for (const ContactModel model : {ContactModel::coulomb, ContactModel::lan2016}) {
+    Parameters parameters = dry_plate(model);
+    parameters.boundaries.lower_velocity = {0.3, -0.1};
+    parameters.microparticles.wall_attraction = 0;  // the lattice would pull sideways
+    Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+    MicroparticlePlacement placement = sphere_at({8, 8});
+    placement.rolling_friction = 0;
+    simulation.add_microparticle(placement);
+    simulation.set_body_forces({{0, 0, -0.3}, Vector3d::Zero()});
+    run(simulation, 3000);
+    const MicroparticleObservation moved = only_one(simulation);
+    const double share = model == ContactModel::coulomb ? 1 / (1 + 1.5) : 1;
+    EXPECT_NEAR(moved.velocity.x(), 0.3 * share, 1e-3);
+    EXPECT_NEAR(moved.velocity.y(), -0.1 * share, 1e-3);
+    EXPECT_NEAR(moved.angular_velocity.y(), -0.3 * (1 - share), 1e-3);
+  }
+}
+
 TEST(Contact, TwoMicroparticlesBounceAndKeepMomentumAndEnergy) {
   Simulation simulation = box(20);
   MicroparticlePlacement first = sphere_at({5, 10}, 10.0), second = sphere_at({9, 10.5}, 10.0);

@@ -145,7 +145,7 @@ struct Rolling {
   Rolling() {
     body.mass = 612;
     body.inertia = Vector3d::Constant(2.0 / 3.0 * 612);
-    contacts = {{{0, 0, -1}, {0, 0, 1}, 1.0, load}};
+    contacts = {{{0, 0, -1}, {0, 0, 1}, 1.0, load, Vector3d::Zero()}};
   }
   Vector3d velocity_at_contact() const {
     return body.velocity + body.angular_velocity().cross(contacts[0].arm);

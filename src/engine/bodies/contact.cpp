@@ -76,6 +76,25 @@ double wall_adhesion(double attraction, double radius, double beads_per_area, co
   return -attraction * pi * per_area * 2.0 * pi * radius * beads_per_area * total;
 }
 
+double wall_adhesion_of_disc(double attraction, double radius, double beads_per_length,
+                             const WallParameters& wall) {
+  // A row of n beads a length at distance z attracts one bead with 2 n |A| (z arsinh(x / z) - z x) for z < 1,
+  // x = sqrt(1 - z^2).
+  const auto row = [](double z) {
+    if (z <= 0 || z >= 1) return 0.0;
+    const double x = std::sqrt(1 - z * z);
+    return 2 * z * (std::asinh(x / z) - x);
+  };
+  constexpr int pieces = 2000;  // of half the circle
+  double total = 0;
+  for (int k = 0; k < pieces; ++k) {
+    const double height = radius * (1 - std::cos(pi * (k + 0.5) / pieces));
+    for (int layer = 0; layer < wall.layers; ++layer)
+      total += row(height + 0.5 * layer * wall.lattice_constant);
+  }
+  return -attraction / wall.lattice_constant * beads_per_length * 2 * pi * radius / pieces * total;
+}
+
 FrictionReport apply_friction(ContactModel model, const Friction& friction,
                               const std::vector<WallContact>& contacts, double time_step, RigidBody& body) {
   FrictionReport report;
@@ -83,7 +102,8 @@ FrictionReport apply_friction(ContactModel model, const Friction& friction,
     // lan2016 looks at the centre, coulomb at the point of contact.
     const bool at_centre = model == ContactModel::lan2016;
     const Vector3d arm = at_centre ? Vector3d::Zero() : contact.arm;
-    const Vector3d sliding = in_wall(body.velocity + body.angular_velocity().cross(arm), contact);
+    const Vector3d sliding =
+        in_wall(body.velocity + body.angular_velocity().cross(arm) - contact.velocity, contact);
     if (const double speed = sliding.norm(); speed > 0) {
       const Vector3d direction = sliding / speed;
       const double stopping = speed / mobility(body, arm, direction);

@@ -20,6 +20,7 @@ struct WallContact {
   Vector3d normal;      ///< out of the wall, of length 1
   double radius;        ///< of the sphere that touches, r_c
   double normal_force;  ///< k_BT / r_c, > 0
+  Vector3d velocity;    ///< of the wall, in its plane, r_c / tau
 };
 
 /// Coefficients of friction between a body and the wall.
@@ -55,8 +56,13 @@ double largest_elastic_modulus(double mass, double radius, double load, double t
 /// integrals: the load of its contact. k_BT / r_c.
 double wall_adhesion(double attraction, double radius, double beads_per_area, const WallParameters& wall);
 
+/// The same for a disc with beads around it and a wall of two dimensions, a row of beads each layer.
+double wall_adhesion_of_disc(double attraction, double radius, double beads_per_length,
+                             const WallParameters& wall);
+
 /// Takes friction's impulse of one step from a body that moves as if it were free (velocity and angular
-/// momentum after the kick). Friction can stop what moves; it never turns it round.
+/// momentum after the kick). Friction can stop what moves on a wall; it never turns it round. Velocities are
+/// relative to the wall's.
 ///
 /// lan2016 (Lan 3.1.3, 3.1.4): sliding friction f F_normal slows the centre and makes no torque; rolling
 /// friction, f_r F_normal on the arm R, slows the turning about axes in the wall; what turns also rolls: the

@@ -9,6 +9,8 @@
 
 #include "engine/bodies/shape.h"
 #include "engine/integrate.h"
+#include "engine/kernels/lanes-inl.h"
+#include "engine/noise-inl.h"
 
 namespace dmf::engine {
 namespace {
@@ -21,16 +23,6 @@ Vector3d vector_of(const Record& record) { return {record.x, record.y, record.z}
 
 /// Two microparticles hold each other up to this distance between their surfaces, ever less, r_c.
 constexpr double adhesion_range = 0.1;
-
-/// Force that pushes two spheres apart (negative: pulls them together).
-double force_between(const MicroparticleParameters& model, double first_radius, double second_radius,
-                     double distance) {
-  const double gap = distance - first_radius - second_radius;
-  const double radius = first_radius * second_radius / (first_radius + second_radius);
-  const double adhesion =
-      model.particle_adhesion * 2.0 * radius * std::clamp(1.0 - gap / adhesion_range, 0.0, 1.0);
-  return (gap < 0 ? hertz_force(model.elastic_modulus, radius, -gap) : 0.0) - adhesion;
-}
 
 void require_sound(const MicroparticlePlacement& placement, const Parameters& parameters) {
   const std::vector<std::string> found = violations(placement, parameters);
@@ -55,7 +47,7 @@ double distance_to(const Solid& solid, const Vector3d& centre, double radius) {
 }
 
 /// From a microparticle's surface to a place, r_c; where that is far, something far.
-double gap_to(const Vector3d& place, const Microparticle& particle, const Domain& domain) {
+double gap_to(const Vector3d& place, const Microparticle& particle, const ShearedDomain& domain) {
   const Vector3d from_centre = domain.nearest_image(place - particle.body.position);
   double gap = from_centre.norm() - particle.bounding_radius;
   if (gap >= smallest_gap) return gap;
@@ -65,7 +57,8 @@ double gap_to(const Vector3d& place, const Microparticle& particle, const Domain
   return gap;
 }
 
-void require_apart(const Microparticle& particle, const std::vector<Vector3d>& liquid, const Domain& domain) {
+void require_apart(const Microparticle& particle, const std::vector<Vector3d>& liquid,
+                   const ShearedDomain& domain) {
   for (const Vector3d& bead : liquid) {
     const double gap = gap_to(bead, particle, domain);
     if (gap < smallest_gap)
@@ -80,7 +73,14 @@ void require_apart(const Microparticle& particle, const std::vector<Vector3d>& l
 
 }  // namespace
 
-Microparticles::Microparticles(const Parameters& parameters) : parameters_(parameters), solid_(parameters) {}
+Microparticles::Microparticles(const Parameters& parameters)
+    : parameters_(parameters), images_{parameters.domain}, solid_(parameters) {}
+
+double Microparticles::largest_bounding_radius() const {
+  double largest = 0;
+  for (const Microparticle& particle : all_) largest = std::max(largest, particle.bounding_radius);
+  return largest;
+}
 
 std::uint32_t Microparticles::add(const MicroparticlePlacement& placement,
                                   const std::vector<Vector3d>& liquid, double smallest_mass) {
@@ -92,7 +92,7 @@ std::uint32_t Microparticles::add(const MicroparticlePlacement& placement,
                     "it does",
                     particle.body.mass, smallest_mass));
   require_room(particle);
-  require_apart(particle, liquid, parameters_.domain);
+  require_apart(particle, liquid, images_);
   particle.id = next_id_++;
   particle.first_bead = static_cast<std::uint32_t>(beads_.size());
   append_beads(particle);
@@ -117,16 +117,17 @@ void Microparticles::remove(std::uint32_t id) {
   cut(beads_.wall_force);
   cut(beads_.listed);
   cut(beads_.own_density);
+  beads_.key.resize(beads_.size());  // by index
   for (auto later = all_.erase(found); later != all_.end(); ++later) later->first_bead -= count;
 }
 
 void Microparticles::require_clear(const std::vector<Vector3d>& sites) const {
-  for (const Microparticle& particle : all_) require_apart(particle, sites, parameters_.domain);
+  for (const Microparticle& particle : all_) require_apart(particle, sites, images_);
 }
 
 bool Microparticles::clear_of(const Vector3d& site) const {
   return std::all_of(all_.begin(), all_.end(), [&](const Microparticle& particle) {
-    return gap_to(site, particle, parameters_.domain) >= smallest_gap;
+    return gap_to(site, particle, images_) >= smallest_gap;
   });
 }
 
@@ -143,6 +144,7 @@ void Microparticles::require_room(const Microparticle& particle) const {
   for (const ContactSphere& sphere : particle.contact_spheres) {
     const Vector3d centre = centre_of(particle, sphere);
     for (int axis = 0; axis < 3; ++axis) {
+      if (parameters_.flat(axis)) continue;
       if (domain.periodic(axis)) {
         const double needed = 2.0 * (particle.bounding_radius + parameters_.liquid.cutoff_radius);
         if (domain.size()[axis] < needed)
@@ -167,7 +169,7 @@ void Microparticles::require_room(const Microparticle& particle) const {
           centre.x(), centre.y(), centre.z(), distance, sphere.radius));
     for (const Microparticle& other : all_)
       for (const ContactSphere& its : other.contact_spheres) {
-        const double distance = domain.nearest_image(centre - centre_of(other, its)).norm();
+        const double distance = images_.nearest_image(centre - centre_of(other, its)).norm();
         const double allowed = sphere.radius + its.radius;
         if (distance < allowed)
           throw InvalidInput(
@@ -184,9 +186,11 @@ void Microparticles::append_beads(const Microparticle& particle) {
        {&beads_.position, &beads_.moving, &beads_.liquid_force, &beads_.wall_force, &beads_.listed})
     array->resize(count);
   const std::vector<float> own = parameters_.microparticles.counts_own_beads
-                                     ? own_densities(particle, parameters_.liquid.repulsion_radius)
+                                     ? own_densities(particle, parameters_)
                                      : std::vector<float>(particle.bead_count(), 0.f);
   beads_.own_density.insert(beads_.own_density.end(), own.begin(), own.end());
+  while (beads_.key.size() < count)
+    beads_.key.push_back(HWY_NAMESPACE::body_key(static_cast<std::uint32_t>(beads_.key.size())));
 }
 
 void Microparticles::place_beads(const Microparticle& particle, const Vector3d& centre_velocity) {
@@ -246,6 +250,7 @@ void Microparticles::finish(const BodyForces& far) {
     particle.totals.drive_force += drive;
   }
   touch_each_other();
+  touch_mirror_images();
   for (Microparticle& particle : all_) {
     particle.body.velocity += 0.5 * dt / particle.body.mass * particle.force;
     particle.body.angular_momentum += 0.5 * dt * particle.torque;
@@ -273,17 +278,21 @@ void Microparticles::touch_walls(Microparticle& particle) {
 
 void Microparticles::touch_sides(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm) {
   const Domain& domain = parameters_.domain;
+  const BoundaryParameters& boundaries = parameters_.boundaries;
   const Vector3d centre = particle.body.position + arm;
   for (int axis = 0; axis < 3; ++axis) {
-    if (domain.periodic(axis)) continue;
+    if (domain.periodic(axis) || parameters_.flat(axis)) continue;
     for (const int side : {1, -1}) {
+      const auto& reflection = side > 0 ? boundaries.lower_reflection : boundaries.upper_reflection;
+      if (reflection[axis] == Reflection::symmetric) continue;  // meets its mirror image there
       const double distance =
           side > 0 ? centre[axis] - domain.lower[axis] : domain.upper[axis] - centre[axis];
       if (distance >= sphere.radius) continue;
-      const WallContact contact = press(particle, sphere, arm, side * Vector3d::Unit(axis), distance);
+      WallContact contact = press(particle, sphere, arm, side * Vector3d::Unit(axis), distance);
       // Sides that are no plates only keep things in: no friction.
-      if (axis == 2 && (side > 0 ? domain.has_wall() : domain.has_top_plate()))
-        particle.contacts.push_back(contact);
+      if (axis != 2 || !(side > 0 ? domain.has_wall() : domain.has_top_plate())) continue;
+      contact.velocity.head<2>() = side > 0 ? boundaries.lower_velocity : boundaries.upper_velocity;
+      particle.contacts.push_back(contact);
     }
   }
 }
@@ -306,14 +315,14 @@ WallContact Microparticles::press(Microparticle& particle, const ContactSphere& 
   const Vector3d force = magnitude * normal;
   particle.force += force;
   particle.torque += to_contact.cross(force);
-  return {to_contact, normal, sphere.radius, magnitude};
+  return {to_contact, normal, sphere.radius, magnitude, Vector3d::Zero()};
 }
 
 void Microparticles::touch_each_other() {
   for (std::size_t i = 0; i < all_.size(); ++i)
     for (std::size_t j = i + 1; j < all_.size(); ++j) {
       Microparticle &first = all_[i], &second = all_[j];
-      const Vector3d between = parameters_.domain.nearest_image(first.body.position - second.body.position);
+      const Vector3d between = images_.nearest_image(first.body.position - second.body.position);
       if (between.norm() > first.bounding_radius + second.bounding_radius + adhesion_range) continue;
       for (const ContactSphere& a : first.contact_spheres)
         for (const ContactSphere& b : second.contact_spheres) {
@@ -323,8 +332,7 @@ void Microparticles::touch_each_other() {
           const double distance = d.norm();
           if (distance == 0 || distance > a.radius + b.radius + adhesion_range) continue;
           const Vector3d normal = d / distance;
-          const Vector3d force =
-              force_between(parameters_.microparticles, a.radius, b.radius, distance) * normal;
+          const Vector3d force = force_between(a, b, distance) * normal;
           // One point of action for both, so that angular momentum is kept.
           first.force += force;
           first.torque += (arm_a - a.radius * normal).cross(force);
@@ -334,19 +342,55 @@ void Microparticles::touch_each_other() {
     }
 }
 
+void Microparticles::touch_mirror_images() {
+  // Each its own: with heights z of two that do not overlap, |i - j'|^2 = |i - j|^2 + 4 z_i z_j is farther
+  // than others reach.
+  const BoundaryParameters& boundaries = parameters_.boundaries;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool above : {false, true}) {
+      if ((above ? boundaries.upper_reflection : boundaries.lower_reflection)[axis] != Reflection::symmetric)
+        continue;
+      const double plane = (above ? parameters_.domain.upper : parameters_.domain.lower)[axis];
+      for (Microparticle& particle : all_) {
+        const double height = particle.body.position[axis] - plane;
+        if (std::abs(height) > particle.bounding_radius + 0.5 * adhesion_range) continue;
+        for (const ContactSphere& own : particle.contact_spheres)
+          for (const ContactSphere& mirrored : particle.contact_spheres) {
+            const Vector3d arm = particle.body.orientation * own.offset;
+            Vector3d to_image = particle.body.orientation * mirrored.offset;
+            to_image[axis] = -2 * height - to_image[axis];
+            const Vector3d d = arm - to_image;
+            const double distance = d.norm();
+            if (distance == 0 || distance > own.radius + mirrored.radius + adhesion_range) continue;
+            const Vector3d normal = d / distance;
+            const Vector3d force = force_between(own, mirrored, distance) * normal;
+            particle.force += force;
+            particle.torque += (arm - own.radius * normal).cross(force);
+          }
+      }
+    }
+}
+
+double Microparticles::force_between(const ContactSphere& first, const ContactSphere& second,
+                                     double distance) const {
+  const MicroparticleParameters& model = parameters_.microparticles;
+  const double gap = distance - first.radius - second.radius;
+  const double radius = first.radius * second.radius / (first.radius + second.radius);
+  const double adhesion =
+      model.particle_adhesion * 2.0 * radius * std::clamp(1.0 - gap / adhesion_range, 0.0, 1.0);
+  return (gap < 0 ? hertz_force(model.elastic_modulus, radius, -gap) : 0.0) - adhesion;
+}
+
 void Microparticles::note_listed() {
-  const Domain& domain = parameters_.domain;
   for (Microparticle& particle : all_) {
-    Vector3d shift = Vector3d::Zero();
-    for (int axis = 0; axis < 3; ++axis)
-      if (domain.periodic(axis))
-        shift[axis] = -domain.size()[axis] *
-                      std::floor((particle.body.position[axis] - domain.lower[axis]) / domain.size()[axis]);
+    const Vector3d shift = images_.shift_into(particle.body.position);
     if (shift.isZero()) continue;
+    const double slower = images_.velocity_shift(shift);
     particle.body.position += shift;
-    for (std::uint32_t k = 0; k < particle.bead_count(); ++k) {
-      Record& at = beads_.position[particle.first_bead + k];
-      at = record_of(vector_of(at) + shift, at.w);
+    particle.body.velocity.x() += slower;
+    for (std::uint32_t k = particle.first_bead; k < particle.first_bead + particle.bead_count(); ++k) {
+      beads_.position[k] = record_of(vector_of(beads_.position[k]) + shift, beads_.position[k].w);
+      beads_.moving[k].x = static_cast<float>(beads_.moving[k].x + slower);
     }
   }
   beads_.listed = beads_.position;

@@ -5,25 +5,15 @@
 
 #include "engine/archive.h"
 #include "engine/beads.h"
+#include "engine/bodies/body_beads.h"
 #include "engine/bodies/contact.h"
 #include "engine/bodies/rigid_body.h"
 #include "engine/microparticle.h"
 #include "engine/parameters.h"
+#include "engine/walls/sheared_domain.h"
 #include "engine/walls/solid.h"
 
 namespace dmf::engine {
-
-/// The beads of all microparticles, microparticle by microparticle, each in patches (shell.h).
-struct BodyBeads {
-  AlignedVector<Record> position;      ///< x, y, z; w: A_ls
-  AlignedVector<Record> moving;        ///< velocity that the forces see; w: density
-  AlignedVector<Record> liquid_force;  ///< force pass writes
-  AlignedVector<Record> wall_force;    ///< force pass writes
-  AlignedVector<Record> listed;        ///< position when the liquid was sorted; w unused
-  std::vector<float> own_density;      ///< what the beads of its own body count
-
-  std::size_t size() const { return position.size(); }
-};
 
 /// Means over the steps between two looks of the observer.
 struct MicroparticleMeans {
@@ -71,6 +61,10 @@ class Microparticles {
   const std::vector<Microparticle>& all() const { return all_; }
   BodyBeads& beads() { return beads_; }
   const BodyBeads& beads() const { return beads_; }
+  double largest_bounding_radius() const;
+
+  /// Where images beyond sheared sides stand from now on.
+  void set_images(const ShearedDomain& images) { images_ = images; }
 
   /// Appends one at rest.
   /// @param liquid         where liquid beads are.
@@ -109,9 +103,12 @@ class Microparticles {
   /// @param arm  from the centre of mass to the sphere's. @returns the contact, whose forces act now.
   WallContact press(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm,
                     const Vector3d& normal, double distance) const;
+  double force_between(const ContactSphere& first, const ContactSphere& second, double distance) const;
   void touch_each_other();
+  void touch_mirror_images();
 
   Parameters parameters_;
+  ShearedDomain images_;
   Solid solid_;
   std::vector<SolidTouch> touches_;  ///< reused
   std::uint32_t next_id_ = 1;

@@ -54,13 +54,14 @@ void archive_motion(Archive& archive, Microparticle& particle) {
   archive(particle.torque);
   std::uint64_t contacts = particle.contacts.size();
   archive(contacts);
-  archive.require_left(contacts, 8 * sizeof(double));
+  archive.require_left(contacts, 11 * sizeof(double));
   if (archive.reading()) particle.contacts.resize(contacts);
   for (WallContact& contact : particle.contacts) {
     archive(contact.arm);
     archive(contact.normal);
     archive(contact.radius);
     archive(contact.normal_force);
+    archive(contact.velocity);
     if (!(std::abs(contact.normal.squaredNorm() - 1) < 1e-9))
       throw InvalidInput("saved state: a microparticle touches a wall that faces nowhere");
   }

@@ -18,10 +18,12 @@ constexpr double pi = 3.14159265358979323846;
 /// Beads of a patch: as many as a cell of liquid holds.
 constexpr std::uint32_t patch_size = 24;
 
-std::uint32_t bead_count(const MicroparticlePlacement& placement) {
+std::uint32_t bead_count(const MicroparticlePlacement& placement, int dimensions) {
   if (!placement.points.empty()) return static_cast<std::uint32_t>(placement.points.size());
   if (placement.smooth) return 1;
   if (placement.beads > 0) return placement.beads;
+  if (dimensions == 2)
+    return static_cast<std::uint32_t>(std::lround(usual_beads_per_length * 2 * pi * placement.radius));
   return nearest_shell_count(usual_beads_per_area * 4 * pi * placement.radius * placement.radius);
 }
 
@@ -32,11 +34,11 @@ double extent(const MicroparticlePlacement& placement) {
   return largest + placement.radius;
 }
 
-double mass_of(const MicroparticlePlacement& placement) {
+double mass_of(const MicroparticlePlacement& placement, int dimensions) {
   // A smooth sphere weighs what the shell that it stands for would.
   MicroparticlePlacement with_beads = placement;
   with_beads.smooth = false;
-  return placement.mass.value_or(static_cast<double>(bead_count(with_beads)));
+  return placement.mass.value_or(static_cast<double>(bead_count(with_beads, dimensions)));
 }
 
 /// Collects what is wrong with a placement.
@@ -54,7 +56,7 @@ class Violations {
 };
 
 void check_shell(const MicroparticlePlacement& placement, Violations& check) {
-  const std::uint32_t beads = bead_count(placement);
+  const std::uint32_t beads = bead_count(placement, 3);
   check.unless(is_shell_count(beads),
                "beads: {}, allowed: numbers that spread evenly over a sphere, 10 (h^2 + h k + k^2) + 2; the "
                "nearest is {}",
@@ -68,18 +70,29 @@ void check_shell(const MicroparticlePlacement& placement, Violations& check) {
                std::sqrt(beads / (4 * pi * fewest_beads_per_area)));
 }
 
+void check_circle(const MicroparticlePlacement& placement, Violations& check) {
+  const std::uint32_t beads = bead_count(placement, 2);
+  const double fewest = std::ceil(fewest_beads_per_length * 2 * pi * placement.radius);
+  check.unless(beads <= largest_bead_count, "beads: {}, allowed: up to {}", beads, largest_bead_count);
+  check.unless(beads >= fewest, "beads: {} around a disc of radius {} r_c let liquid in, allowed: {} or more",
+               beads, placement.radius, fewest);
+}
+
 void check_contact(const MicroparticlePlacement& placement, const Parameters& parameters, Violations& check) {
   const MicroparticleParameters& model = parameters.microparticles;
   const bool meets_wall = parameters.domain.has_wall() || parameters.label_grid.grid;
   if (!meets_wall || model.wall_attraction == 0) return;
   const double radius = placement.points.empty() ? placement.radius : extent(placement);
-  const double beads_per_area =
-      placement.smooth ? usual_beads_per_area : bead_count(placement) / (4 * pi * radius * radius);
+  const bool flat = parameters.dimensions == 2;
+  const double beads = bead_count(placement, parameters.dimensions);
   WallParameters wall = parameters.wall;  // the denser one's
   if (parameters.label_grid.grid)
     wall.lattice_constant = std::min(wall.lattice_constant, parameters.label_grid.lattice_constant);
-  const double load = wall_adhesion(model.wall_attraction, radius, beads_per_area, wall);
-  const double mass = mass_of(placement);
+  const double beads_per_area = placement.smooth ? usual_beads_per_area : beads / (4 * pi * radius * radius);
+  const double load =
+      flat ? wall_adhesion_of_disc(model.wall_attraction, radius, beads / (2 * pi * radius), wall)
+           : wall_adhesion(model.wall_attraction, radius, beads_per_area, wall);
+  const double mass = mass_of(placement, parameters.dimensions);
   const double largest = largest_elastic_modulus(mass, placement.radius, load, parameters.time_step);
   // sqrt(k / m) time_step grows with E^(1/3).
   check.unless(model.elastic_modulus <= largest,
@@ -127,7 +140,13 @@ std::vector<std::string> violations(const MicroparticlePlacement& placement, con
   check.unless(!placement.smooth ||
                    liquid_law(parameters.liquid, parameters.time_step).weight() == DissipativeWeight::shared,
                "smooth: true, allowed: in a liquid of dissipation_exponent 2 and dissipation_radius 1");
-  if (placement.points.empty() && !placement.smooth) check_shell(placement, check);
+  const bool flat = parameters.dimensions == 2;
+  check.unless(!placement.smooth || !flat, "smooth: true, allowed: in three dimensions");
+  check.unless(!flat || std::all_of(placement.points.begin(), placement.points.end(),
+                                    [](const Vector3d& point) { return point.y() == 0; }),
+               "points: allowed: 0 along y with dimensions: 2");
+  if (placement.points.empty() && !placement.smooth)
+    flat ? check_circle(placement, check) : check_shell(placement, check);
   check_contact(placement, parameters, check);
   check.unless(parameters.integrator == Integrator::groot_warren,
                "integrator: baoab, allowed: groot_warren, the one that moves microparticles");
@@ -141,16 +160,19 @@ Microparticle shaped(const MicroparticlePlacement& placement, const Parameters& 
                        placement.kinetic_friction.value_or(placement.static_friction),
                        placement.rolling_friction};
   RigidBody& body = particle.body;
-  body.mass = mass_of(placement);
+  body.mass = mass_of(placement, parameters.dimensions);
+  const bool flat = parameters.dimensions == 2;
   const double radius = placement.radius;
   double lowest = -radius;
   if (placement.points.empty()) {
+    const std::uint32_t beads = bead_count(placement, parameters.dimensions);
     if (placement.smooth)
       particle.offsets = {Vector3d::Zero()};
     else
-      particle.offsets = shell_points(bead_count(placement));
+      particle.offsets = flat ? circle_points(beads) : shell_points(beads);
     for (Vector3d& offset : particle.offsets) offset *= radius;
-    body.inertia = Vector3d::Constant(2.0 / 3.0 * body.mass * radius * radius);
+    const Vector3d of_radius = flat ? Vector3d(0.5, 1, 0.5) : Vector3d::Constant(2.0 / 3.0);
+    body.inertia = body.mass * radius * radius * of_radius;
     particle.contact_spheres = {{Vector3d::Zero(), radius}};
     particle.bounding_radius = radius;
   } else {
@@ -166,11 +188,15 @@ Microparticle shaped(const MicroparticlePlacement& placement, const Parameters& 
       inertia +=
           share * body.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
-    Eigen::Matrix3d axes = principal.eigenvectors();
-    if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
-    body.inertia = principal.eigenvalues();
-    body.orientation = Eigen::Quaterniond(axes).normalized();
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+    body.inertia = inertia.diagonal();
+    if (!flat) {  // in a plane it only turns about y, which is a principal axis
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
+      axes = principal.eigenvectors();
+      if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
+      body.inertia = principal.eigenvalues();
+      body.orientation = Eigen::Quaterniond(axes).normalized();
+    }
     auto shape = std::make_shared<std::vector<Vector3d>>();
     for (const Vector3d& point : placement.points) {
       particle.offsets.push_back(axes.transpose() * (point - body.position));
@@ -182,11 +208,13 @@ Microparticle shaped(const MicroparticlePlacement& placement, const Parameters& 
   }
   body.position += Vector3d(placement.center.x(), placement.center.y(),
                             placement.z.value_or(parameters.domain.lower.z() - lowest));
+  if (flat) body.position.y() = parameters.plane();
   particle.patch_ends = order_in_patches(particle.offsets, patch_size);
   return particle;
 }
 
-std::vector<float> own_densities(const Microparticle& particle, double repulsion_radius) {
+std::vector<float> own_densities(const Microparticle& particle, const Parameters& parameters) {
+  const double repulsion_radius = parameters.liquid.repulsion_radius;
   if (particle.placement.smooth) {
     const SmoothShell shell(particle.placement.radius, usual_beads_per_area, repulsion_radius);
     return {static_cast<float>(shell.own_density())};
@@ -197,7 +225,8 @@ std::vector<float> own_densities(const Microparticle& particle, double repulsion
     double total = 0;
     for (const Vector3d& other : offsets)
       if (&other != &at) total += HWY_NAMESPACE::density_weight((at - other).norm(), 1.0 / repulsion_radius);
-    densities.push_back(static_cast<float>(density_normalization(repulsion_radius) * total));
+    densities.push_back(
+        static_cast<float>(density_normalization(repulsion_radius, parameters.dimensions) * total));
   }
   return densities;
 }

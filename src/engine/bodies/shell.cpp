@@ -141,6 +141,26 @@ std::vector<Vector3d> shell_points(std::uint32_t beads) {
   return points;
 }
 
+std::vector<Vector3d> circle_points(std::uint32_t beads) {
+  assert(beads >= 3);
+  // A library's sine and cosine differ in the last bit from processor to processor.
+  const double angle = 2 * 3.14159265358979323846 / beads;
+  double cosine = 0, sine = 0, term = 1;
+  for (int k = 0; k < 40; k += 2) {
+    cosine += term;
+    term *= angle / (k + 1);
+    sine += term;
+    term *= -angle / (k + 2);
+  }
+  std::vector<Vector3d> points{Vector3d::UnitX()};
+  while (points.size() < beads) {
+    const Vector3d& last = points.back();
+    points.push_back(
+        Vector3d(cosine * last.x() - sine * last.z(), 0, sine * last.x() + cosine * last.z()).normalized());
+  }
+  return points;
+}
+
 std::vector<std::uint32_t> order_in_patches(std::vector<Vector3d>& points, std::uint32_t largest) {
   std::vector<std::uint32_t> ends;
   bisect(points, 0, static_cast<std::uint32_t>(points.size()), largest, ends);

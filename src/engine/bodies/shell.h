@@ -17,6 +17,10 @@ std::uint32_t nearest_shell_count(double beads);
 /// function of the count alone, to the bit. @param beads  a shell count up to 20,000.
 std::vector<Eigen::Vector3d> shell_points(std::uint32_t beads);
 
+/// That many points evenly around the unit circle in the plane of x and z. A function of the count alone, to
+/// the bit. @param beads  3 or more.
+std::vector<Eigen::Vector3d> circle_points(std::uint32_t beads);
+
 /// Reorders points so that consecutive ones lie close together, and cuts them into patches of at most
 /// `largest` points. @returns where each patch ends.
 std::vector<std::uint32_t> order_in_patches(std::vector<Eigen::Vector3d>& points, std::uint32_t largest);

@@ -75,7 +75,8 @@ void add_smooth_densities(const PairPass& pass, const Microparticles& bodies, co
     const SmoothShell shell = shell_of(particle, pass);
     for_each_around(pass, pass.position, near.liquid, particle.body.position, particle.placement.radius + 1.0,
                     [&](std::uint32_t j, const Vector3d&, double distance) {
-                      pass.predicted[j].w += static_cast<float>(shell.density(distance));
+                      pass.predicted[pairs.ghosts().source(j)].w +=
+                          static_cast<float>(shell.density(distance));
                     });
   }
 }
@@ -83,6 +84,7 @@ void add_smooth_densities(const PairPass& pass, const Microparticles& bodies, co
 void add_smooth_forces(const PairPass& pass, const Microparticles& bodies, const Pairs& pairs) {
   const MdpdLaw<double>& of_first = pass.laws(Species::liquid, Species::microparticle);
   const MdpdLaw<double>& adhesion = pass.laws(Species::wall, Species::microparticle);
+  const Ghosts& ghosts = pairs.ghosts();
   const double range = 1.0 / of_first.inverse_cutoff_radius,
                short_range = 1.0 / of_first.inverse_repulsion_radius;
   for (const SmoothNeighbours& near : pairs.smooth_neighbours()) {
@@ -109,10 +111,11 @@ void add_smooth_forces(const PairPass& pass, const Microparticles& bodies, const
                           law.friction * beads * parting +
                           law.random_amplitude * std::sqrt(std::max(beads, 0.0)) * zeta;
                       const Vector3d force = magnitude * out;
-                      Record& sum = pass.force[j];
-                      sum.x += static_cast<float>(force.x());
-                      sum.y += static_cast<float>(force.y());
-                      sum.z += static_cast<float>(force.z());
+                      const Vector3d felt = ghosts.force_on_source(j, force);
+                      Record& sum = pass.force[ghosts.source(j)];
+                      sum.x += static_cast<float>(felt.x());
+                      sum.y += static_cast<float>(felt.y());
+                      sum.z += static_cast<float>(felt.z());
                       of_liquid -= force;
                     });
     for_each_around(pass, pass.wall, near.wall, particle.body.position, reach,

@@ -29,10 +29,10 @@ class Draws {
   double uniform(double lower, double upper) {
     return lower + (upper - lower) * ((bead_key(key_, count_++) + 0.5) / 4294967296.0);
   }
-  /// Evenly over the sphere, without a sine or cosine.
-  Vector3d direction() {
+  /// Evenly over the sphere, or the circle in a plane, without a sine or cosine.
+  Vector3d direction(bool flat) {
     for (;;) {
-      const Vector3d d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const Vector3d d(uniform(-1, 1), flat ? 0 : uniform(-1, 1), uniform(-1, 1));
       const double square = d.squaredNorm();
       if (square < 1 && square > 0.01) return d / std::sqrt(square);
     }
@@ -53,44 +53,41 @@ bool inside(const Vector3d& p, const ChainPlacement& placement, const Domain& do
   return !solid.contains(p.cast<float>());
 }
 
-Vector3d somewhere(Draws& draws, const Vector3d& lower, const Vector3d& upper) {
+Vector3d somewhere(Draws& draws, const ChainPlacement& placement, const Parameters& parameters) {
   Vector3d p;
-  for (int axis = 0; axis < 3; ++axis) p[axis] = draws.uniform(lower[axis], upper[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    p[axis] = parameters.flat(axis) ? parameters.plane()
+                                    : draws.uniform(placement.lower[axis], placement.upper[axis]);
   return p;
 }
 
-std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement, const Domain& domain,
-                                          const Solid& solid) {
-  std::vector<Vector3d> sites{somewhere(draws, placement.lower, placement.upper)};
+std::optional<std::vector<Vector3d>> walk(Draws& draws, const ChainPlacement& placement,
+                                          const Parameters& parameters, const Solid& solid) {
+  const Domain& domain = parameters.domain;
+  std::vector<Vector3d> sites{somewhere(draws, placement, parameters)};
   if (!inside(sites.front(), placement, domain, solid)) return std::nullopt;
   while (sites.size() < placement.beads) {
     int tries = 0;
     Vector3d next;
     do {
       if (++tries > most_tries) return std::nullopt;
-      next = sites.back() + placement.bond_length * draws.direction();
+      next = sites.back() + placement.bond_length * draws.direction(parameters.dimensions == 2);
     } while (!inside(next, placement, domain, solid));
     sites.push_back(next);
   }
   return sites;
 }
 
-std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement, const Domain& domain,
-                                          const Solid& solid) {
+std::optional<std::vector<Vector3d>> line(Draws& draws, const ChainPlacement& placement,
+                                          const Parameters& parameters, const Solid& solid) {
   const Vector3d bond = placement.bond_length * placement.direction.normalized();
-  const Vector3d first = somewhere(draws, placement.lower, placement.upper);
+  const Vector3d first = somewhere(draws, placement, parameters);
   std::vector<Vector3d> sites;
   for (std::uint32_t k = 0; k < placement.beads; ++k) {
     sites.push_back(first + static_cast<double>(k) * bond);
-    if (!inside(sites.back(), placement, domain, solid)) return std::nullopt;
+    if (!inside(sites.back(), placement, parameters.domain, solid)) return std::nullopt;
   }
   return sites;
-}
-
-void wrap(Vector3d& p, const Domain& domain) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (domain.periodic(axis))
-      p[axis] -= domain.size()[axis] * std::floor((p[axis] - domain.lower[axis]) / domain.size()[axis]);
 }
 
 /// The time step that is fine enough for an oscillation, rounded down.
@@ -170,7 +167,15 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
   if (!placement.stretching_force.allFinite())
     found.push_back(
         fmt::format("stretching_force: {}, allowed: finite", text_of(placement.stretching_force)));
+  const double plane = parameters.plane();
+  const bool flat = parameters.dimensions == 2;
+  if (flat && placement.stretching_force.y() != 0)
+    found.push_back(fmt::format("stretching_force: {} along y, allowed: 0 with dimensions: 2",
+                                placement.stretching_force.y()));
   if (placement.points.empty()) {
+    if (flat && placement.shape == ChainShape::straight && placement.direction.y() != 0)
+      found.push_back(
+          fmt::format("direction: {} along y, allowed: 0 with dimensions: 2", placement.direction.y()));
     if (placement.beads < 2 || placement.beads > 100'000)
       found.push_back(fmt::format("beads: {}, allowed: 2 to 100000", placement.beads));
     if (placement.count < 1 || placement.count > 1'000'000)
@@ -199,6 +204,9 @@ std::vector<std::string> violations(const ChainPlacement& placement, const Param
             fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), outside_of(domain)));
       else if (solid.contains(placement.points[k].cast<float>()))
         found.push_back(fmt::format("points[{}]: {}, {}", k, text_of(placement.points[k]), in_solid));
+      else if (flat && placement.points[k].y() != plane)
+        found.push_back(fmt::format("points[{}]: {} along y, allowed: {}, the plane's, with dimensions: 2", k,
+                                    placement.points[k].y(), plane));
       else if (const double r = k > 0 ? (placement.points[k] - placement.points[k - 1]).norm() : 0;
                !(r < longest))
         found.push_back(
@@ -235,6 +243,8 @@ std::vector<std::string> violations(const MembranePlacement& placement, const Pa
   within("local_area_stiffness", s.local_area_stiffness, 0, 1e6, "0 to 1e6 (k_BT / r_c^2)");
   within("volume_stiffness", s.volume_stiffness, 0, 1e6, "0 to 1e6 (k_BT / r_c^3)");
   within("volume_ratio", s.volume_ratio, 0.1, 2, "0.1 to 2");
+  if (parameters.dimensions == 2)
+    found.push_back("membrane: with dimensions: 2, allowed: a chain, or three dimensions");
   const TriangleMesh& mesh = *placement.mesh;
   if (mesh.vertices.size() > 100'000)
     found.push_back(fmt::format("mesh: {} vertices, allowed: 4 to 100000", mesh.vertices.size()));
@@ -274,8 +284,8 @@ std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, 
     Draws draws(parameters.seed, step, first_id + k);
     std::optional<std::vector<Vector3d>> sites;
     for (int tries = 0; !sites && tries < most_tries; ++tries)
-      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters.domain, solid)
-                                                      : walk(draws, placement, parameters.domain, solid);
+      sites = placement.shape == ChainShape::straight ? line(draws, placement, parameters, solid)
+                                                      : walk(draws, placement, parameters, solid);
     if (!sites)
       throw InvalidInput(fmt::format(
           "chain {} of {}: {} beads with bonds of {:.4g} r_c find no room in the box from {} to {}, allowed: "
@@ -284,16 +294,16 @@ std::vector<std::vector<Vector3d>> chain_sites(const ChainPlacement& placement, 
           text_of(placement.upper)));
     chains.push_back(std::move(*sites));
   }
-  for (std::vector<Vector3d>& sites : chains)
-    for (Vector3d& site : sites) wrap(site, parameters.domain);
   return chains;
 }
 
 std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>& sites,
                                       const std::vector<std::uint8_t>& species, const Bonds& bonds,
-                                      const Parameters& parameters, std::uint64_t step,
-                                      std::uint32_t& next_id) {
-  const Domain& domain = parameters.domain;
+                                      const Parameters& parameters, const ShearedDomain& images,
+                                      std::uint64_t step, std::uint32_t& next_id) {
+  Domain domain = parameters.domain;
+  // What is near beyond a sheared side stays: it has an image there, not a place.
+  if (images.speed != 0) domain.lower_side[2] = domain.upper_side[2] = Side::reflecting;
   const auto reach = static_cast<float>(parameters.liquid.cutoff_radius);
   std::vector<bool> bound(next_id, false);  // by id
   for (const Chain& chain : bonds.chains())
@@ -305,19 +315,21 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
   AlignedVector<Record> where = beads.position;
   for (Record& p : where) {
     Vector3d at(p.x, p.y, p.z);
-    wrap(at, domain);
+    at += images.shift_into(at);
     p = {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()), 0};
   }
   grid.lay(domain, domain.lower.cast<float>(), domain.upper.cast<float>(), std::max(reach, 1.f));
   grid.sort(where.data(), where.size(), order);
-  const PeriodicImages images(domain.size().cast<float>());
+  const PeriodicImages shifts(domain.size().cast<float>());
 
   std::vector<std::uint32_t> ids(sites.size(), 0);
   std::vector<std::size_t> without;  // sites
   std::vector<Vector3d> free_sites;
+  std::vector<double> slower;  // all are at rest where they were asked for
   std::vector<BeadRun> runs;
   for (std::size_t k = 0; k < sites.size(); ++k) {
-    const Eigen::Vector3f site = sites[k].cast<float>();
+    const Vector3d shift = images.shift_into(sites[k]);
+    const Eigen::Vector3f site = (sites[k] + shift).cast<float>();
     runs.clear();
     append_runs(grid, domain, site.array() - reach, site.array() + reach, runs);
     float nearest = reach * reach;
@@ -327,7 +339,7 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
         const std::uint32_t i = order[place];
         if (bound[beads.id[i]]) continue;
         const Record& p = where[i];
-        const float apart = (Eigen::Vector3f(p.x, p.y, p.z) + images.shift(run.image) - site).squaredNorm();
+        const float apart = (Eigen::Vector3f(p.x, p.y, p.z) + shifts.shift(run.image) - site).squaredNorm();
         // Of two at one distance the one with the lower id: storage order does not matter.
         if (apart > nearest || (apart == nearest && found < where.size() && beads.id[found] < beads.id[i]))
           continue;
@@ -336,7 +348,8 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
       }
     if (found == std::numeric_limits<std::uint32_t>::max()) {
       without.push_back(k);
-      free_sites.push_back(sites[k]);
+      free_sites.push_back(sites[k] + shift);
+      slower.push_back(images.velocity_shift(shift));
       continue;
     }
     ids[k] = beads.id[found];
@@ -345,7 +358,11 @@ std::vector<std::uint32_t> take_sites(Beads& beads, const std::vector<Vector3d>&
     p = {site.x(), site.y(), site.z(), p.w};
   }
   const std::vector<std::uint32_t> added = place_beads(beads, free_sites, 0, parameters, step, next_id);
-  for (std::size_t k = 0; k < without.size(); ++k) ids[without[k]] = added[k];
+  for (std::size_t k = 0; k < without.size(); ++k) {
+    ids[without[k]] = added[k];
+    Record& velocity = beads.velocity[beads.size() - without.size() + k];
+    velocity.x = static_cast<float>(velocity.x + slower[k]);
+  }
   give_species(beads, ids, species);
   return ids;
 }

@@ -49,7 +49,7 @@ double longest_bond(const Domain& domain) {
 }
 
 Bonds::Bonds(const Parameters& parameters)
-    : parameters_(parameters), longest_(longest_bond(parameters.domain)) {}
+    : parameters_(parameters), images_{parameters.domain}, longest_(longest_bond(parameters.domain)) {}
 
 std::size_t Bonds::bead_count() const {
   std::size_t count = 0;
@@ -123,7 +123,7 @@ bool Bonds::add_forces(const Chain& chain, Beads& beads) const {
   bool sound = true;
   for (std::size_t k = 0; k + 1 < chain.indices.size(); ++k) {
     const std::uint32_t i = chain.indices[k], j = chain.indices[k + 1];
-    const Vector3d apart = parameters_.domain.nearest_image(at(beads.position[j]) - at(beads.position[i]));
+    const Vector3d apart = images_.nearest_image(at(beads.position[j]) - at(beads.position[i]));
     const double r = apart.norm();
     sound = sound && r < longest;
     // Two beads in one place pull each other nowhere.
@@ -178,9 +178,8 @@ std::vector<Vector3d> Bonds::positions_of(const Chain& chain, const Beads& beads
   positions.reserve(chain.indices.size());
   for (const std::uint32_t index : chain.indices) {
     const Vector3d here = at(beads.position[index]);
-    positions.push_back(positions.empty()
-                            ? here
-                            : positions.back() + parameters_.domain.nearest_image(here - positions.back()));
+    positions.push_back(
+        positions.empty() ? here : positions.back() + images_.nearest_image(here - positions.back()));
   }
   return positions;
 }
@@ -192,7 +191,7 @@ std::vector<Vector3d> Bonds::positions_of(const Membrane& membrane, const Beads&
   for (std::size_t k = 1; k < order.size(); ++k) {
     const Vector3d& before = positions[membrane.network.predecessor()[order[k]]];
     const Vector3d here = at(beads.position[membrane.indices[order[k]]]);
-    positions[order[k]] = before + parameters_.domain.nearest_image(here - before);
+    positions[order[k]] = before + images_.nearest_image(here - before);
   }
   return positions;
 }

@@ -10,6 +10,7 @@
 #include "engine/chain.h"
 #include "engine/membrane.h"
 #include "engine/parameters.h"
+#include "engine/walls/sheared_domain.h"
 
 namespace dmf::engine {
 
@@ -44,6 +45,9 @@ class Bonds {
   const std::vector<Membrane>& membranes() const { return membranes_; }
   std::size_t bead_count() const;
   std::uint32_t next_chain() const { return next_chain_; }  ///< id of the next one
+
+  /// Where images beyond sheared sides stand from now on.
+  void set_images(const ShearedDomain& images) { images_ = images; }
 
   /// Binds beads that are there. @returns the id. find() must come next.
   std::uint32_t bind_chain(const Spring& spring, const Vector3d& stretching_force,
@@ -88,6 +92,7 @@ class Bonds {
   std::string overstretched(const Membrane& membrane, const Beads& beads) const;
 
   Parameters parameters_;
+  ShearedDomain images_;
   double longest_;  ///< bond that periodic sides allow, r_c
   std::uint32_t next_chain_ = 1, next_membrane_ = 1;
   std::vector<Chain> chains_;

@@ -16,6 +16,7 @@ struct BodyPass {
   const Record* position = nullptr;    ///< x, y, z, A_ls
   Record* moving = nullptr;            ///< velocities; density pass writes w = rho
   const float* own_density = nullptr;  ///< what the beads of its own body count in rho
+  const std::uint32_t* key = nullptr;  ///< of their noise
   Record* liquid_force = nullptr;      ///< force pass writes
   Record* wall_force = nullptr;        ///< force pass writes
   bool count_liquid = true, counted_by_liquid = true;

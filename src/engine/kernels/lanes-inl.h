@@ -66,6 +66,10 @@ HWY_INLINE UnsignedLanes operator>>(UnsignedLanes a, int bits) { return hn::Shif
 HWY_INLINE UnsignedLanes bits_of(Lanes a) { return hn::BitCast(UnsignedTag(), a.v); }
 HWY_INLINE UnsignedLanes load_lanes(const std::uint32_t* from) { return hn::LoadU(UnsignedTag(), from); }
 HWY_INLINE void store_lanes(UnsignedLanes a, std::uint32_t* to) { hn::StoreU(a.v, UnsignedTag(), to); }
+/// The numbers at whole lanes of indices.
+HWY_INLINE UnsignedLanes gather(const std::uint32_t* numbers, const std::uint32_t* indices) {
+  return hn::GatherIndex(UnsignedTag(), numbers, hn::BitCast(SignedTag(), hn::LoadU(UnsignedTag(), indices)));
+}
 HWY_INLINE UnsignedLanes lane_numbers() { return hn::Iota(UnsignedTag(), 0); }
 
 /// Two's complement bits as a number in [-2^31, 2^31).

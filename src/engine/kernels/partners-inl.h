@@ -112,7 +112,7 @@ struct BodyBeads {
     Partners j;
     load_records(pass.bodies.position, BeadIndices{indices + k}, j.x, j.y, j.z, j.attraction);
     load_records(pass.bodies.moving, BeadIndices{indices + k}, j.vx, j.vy, j.vz, j.density);
-    j.key = body_key(load_lanes(indices + k));
+    j.key = gather(pass.bodies.key, indices + k);
     return j;
   }
 };

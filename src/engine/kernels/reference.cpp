@@ -10,7 +10,6 @@
 namespace dmf::engine {
 namespace {
 
-using HWY_NAMESPACE::body_key;
 using HWY_NAMESPACE::density_weight;
 using HWY_NAMESPACE::pair_force;
 using HWY_NAMESPACE::pair_noise;
@@ -98,7 +97,7 @@ End liquid_end(const PairPass& pass, std::uint32_t i) {
   return {velocity_of(pass.predicted[i]), pass.predicted[i].w, key_bits(pass.position[i].w)};
 }
 End body_end(const PairPass& pass, std::uint32_t i) {
-  return {velocity_of(pass.bodies.moving[i]), pass.bodies.moving[i].w, body_key(i)};
+  return {velocity_of(pass.bodies.moving[i]), pass.bodies.moving[i].w, pass.bodies.key[i]};
 }
 End wall_end(std::uint32_t i) { return {Vector3d::Zero(), 0, wall_key(i)}; }
 /// As a wall sees the bead.

@@ -20,7 +20,7 @@ struct Surroundings {
 /// A smooth sphere has no beads that could be wet: the liquid within r_c of its surface is compared with what
 /// fits there, outside the gap that the repulsion keeps.
 Surroundings look_around_smooth(const Microparticle& particle, const SmoothNeighbours& near,
-                                const Beads& beads, const Parameters& parameters,
+                                const Beads& beads, const Ghosts& ghosts, const Parameters& parameters,
                                 const DropletTracker& tracker) {
   constexpr double gap = 0.35;
   Surroundings found;
@@ -29,10 +29,11 @@ Surroundings look_around_smooth(const Microparticle& particle, const SmoothNeigh
   for (const BeadRun& run : near.liquid)
     for (std::uint32_t j = run.begin; j < run.end; ++j) {
       const double distance =
-          parameters.domain.nearest_image(vector_of(beads.position[j]) - particle.body.position).norm();
+          parameters.domain.nearest_image(vector_of(ghosts.position(j, beads)) - particle.body.position)
+              .norm();
       if (distance >= radius + 1) continue;
       ++neighbours;
-      ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[j])];
+      ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[ghosts.source(j)])];
       if (distance < 0.5 * radius) ++found.leaked;
     }
   const auto cubed = [](double a) { return a * a * a; };
@@ -59,10 +60,10 @@ Surroundings look_around_beads(const Microparticle& particle, const BodyBeads& b
         std::uint32_t neighbours = 0;
         for (std::uint32_t run = patch.first_run; run < patch.end_run; ++run)
           for (std::uint32_t j = block.runs[run].begin; j < block.runs[run].end; ++j) {
-            const Vector3d liquid = vector_of(beads.position[j]);
+            const Vector3d liquid = vector_of(pairs.ghosts().position(j, beads));
             if (domain.nearest_image(liquid - at).squaredNorm() >= 1.0) continue;
             ++neighbours;
-            ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[j])];
+            ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[pairs.ghosts().source(j)])];
             if (sphere && domain.nearest_image(liquid - particle.body.position).norm() < deep)
               deep_beads.push_back(j);
           }
@@ -83,7 +84,7 @@ Surroundings look_around(const Microparticle& particle, const Microparticles& bo
     return look_around_beads(particle, bodies.beads(), beads, pairs, parameters.domain, tracker);
   for (const SmoothNeighbours& near : pairs.smooth_neighbours())
     if (&bodies.all()[near.microparticle] == &particle)
-      return look_around_smooth(particle, near, beads, parameters, tracker);
+      return look_around_smooth(particle, near, beads, pairs.ghosts(), parameters, tracker);
   return {};
 }
 
@@ -148,7 +149,7 @@ void Carriage::archive(Archive& archive) {
 }
 
 MicroparticlePlace place_in(const Carriage::Entry& entry, const Vector3d& position,
-                            const std::vector<DropletObservation>& droplets, const Domain& domain) {
+                            const std::vector<DropletObservation>& droplets, const ShearedDomain& images) {
   if (entry.droplet == 0) return MicroparticlePlace::dry;
   if (entry.immersion >= all_around) return MicroparticlePlace::inside;
   const auto droplet =
@@ -156,7 +157,7 @@ MicroparticlePlace place_in(const Carriage::Entry& entry, const Vector3d& positi
                    [&entry](const DropletObservation& one) { return one.id == entry.droplet; });
   if (droplet == droplets.end()) return MicroparticlePlace::dry;
   const Vector3d way = droplet->velocity.norm() > 0 ? droplet->velocity : Vector3d::UnitX();
-  return domain.nearest_image(position - droplet->centroid).dot(way) < 0 ? MicroparticlePlace::rear
+  return images.nearest_image(position - droplet->centroid).dot(way) < 0 ? MicroparticlePlace::rear
                                                                          : MicroparticlePlace::front;
 }
 

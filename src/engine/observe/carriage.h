@@ -46,6 +46,6 @@ class Carriage {
 
 /// Where a microparticle stands in its droplet.
 MicroparticlePlace place_in(const Carriage::Entry& entry, const Vector3d& position,
-                            const std::vector<DropletObservation>& droplets, const Domain& domain);
+                            const std::vector<DropletObservation>& droplets, const ShearedDomain& images);
 
 }  // namespace dmf::engine

@@ -48,11 +48,11 @@ bool fills_box(const DropletObservation& droplet, const Domain& domain) {
 DropletTracker::DropletTracker(const Parameters& parameters)
     : parameters_(parameters), wall_plane_(parameters.domain.lower.z()) {}
 
-void DropletTracker::update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+void DropletTracker::update(std::uint64_t step, const Beads& beads, const Pairs& pairs,
                             const std::vector<std::uint8_t>& solvents) {
   const double elapsed = static_cast<double>(step - last_step_) * parameters_.time_step;
   last_step_ = step;
-  std::vector<Component> components = connected_components(beads, blocks, solvents);
+  std::vector<Component> components = connected_components(beads, pairs, solvents);
   const std::map<std::uint32_t, std::uint32_t> merged_into = give_identities(step, components);
 
   vapour_beads_ = beads.size();
@@ -66,7 +66,7 @@ void DropletTracker::update(std::uint64_t step, const Beads& beads, const std::v
       droplet_of_bead_[id] = component.id;
     }
     vapour_beads_ -= component.beads.size();
-    droplets_.push_back(measure(component, beads, blocks, elapsed));
+    droplets_.push_back(measure(component, pairs, elapsed));
   }
   std::sort(droplets_.begin(), droplets_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
 
@@ -89,28 +89,28 @@ void DropletTracker::forget(std::uint32_t droplet) {
 }
 
 std::vector<DropletTracker::Component> DropletTracker::connected_components(
-    const Beads& beads, const std::vector<NeighbourBlock>& blocks,
-    const std::vector<std::uint8_t>& solvents) const {
+    const Beads& beads, const Pairs& pairs, const std::vector<std::uint8_t>& solvents) const {
   const auto liquid_of = [&](std::uint32_t i) {
     return solvents.empty() ? beads.species_of(i) : solvents[i];
   };
   const Eigen::Vector3f size = parameters_.domain.size().cast<float>();
-  const bool periodic[3] = {parameters_.domain.periodic(0), parameters_.domain.periodic(1),
-                            parameters_.domain.periodic(2)};
+  const ShearedDomain images = pairs.ghosts().images();
+  const float offset = static_cast<float>(images.offset);
   // In which image a neighbour stands: whole periods between the two positions.
   const auto image = [&](const Record& i, const Record& j) {
-    const float apart[3] = {i.x - j.x, i.y - j.y, i.z - j.z};
+    float apart[3] = {i.x - j.x, i.y - j.y, i.z - j.z};
     ConnectedBeads::Image result{};
-    for (int axis = 0; axis < 3; ++axis)
-      if (periodic[axis]) {
-        if (apart[axis] > 0.5f * size[axis]) result[axis] = 1;
-        if (apart[axis] < -0.5f * size[axis]) result[axis] = -1;
+    for (const int axis : {2, 1, 0})
+      if (parameters_.domain.periodic(axis)) {
+        result[axis] = static_cast<std::int16_t>(std::lround(apart[axis] / size[axis]));
+        if (axis == 2) apart[0] -= static_cast<float>(result[2]) * offset;
       }
     return result;
   };
   ConnectedBeads connected(beads.size());
-  for (const NeighbourBlock& block : blocks)
-    for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
+  for (const NeighbourBlock& block : pairs.blocks())
+    for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t near) {
+      const std::uint32_t j = pairs.ghosts().source(near);
       if (j < i && liquid_of(i) == liquid_of(j) && !connected.joined(i, j))
         connected.join(i, j, image(beads.position[i], beads.position[j]));
     });
@@ -134,8 +134,11 @@ std::vector<DropletTracker::Component> DropletTracker::connected_components(
     component.beads.push_back(bead);
     const Record& p = beads.position[bead];
     const ConnectedBeads::Image& seen = connected.image_of(bead);
-    component.positions.emplace_back(p.x + seen[0] * size.x(), p.y + seen[1] * size.y(),
+    component.positions.emplace_back(p.x + seen[0] * size.x() + seen[2] * offset, p.y + seen[1] * size.y(),
                                      p.z + seen[2] * size.z());
+    component.velocity += Vector3d(beads.velocity[bead].x + seen[2] * images.speed, beads.velocity[bead].y,
+                                   beads.velocity[bead].z) /
+                          beads_of_root[root];
     if (const std::uint32_t before = droplet_of(beads.id[bead])) ++component.beads_from[before];
   }
   return components;
@@ -197,8 +200,7 @@ std::map<std::uint32_t, std::uint32_t> DropletTracker::give_identities(std::uint
   return merged_into;
 }
 
-DropletObservation DropletTracker::measure(const Component& component, const Beads& beads,
-                                           const std::vector<NeighbourBlock>& blocks, double elapsed) {
+DropletObservation DropletTracker::measure(const Component& component, const Pairs& pairs, double elapsed) {
   DropletObservation droplet;
   Memory& memory = memory_.at(component.id);
   const double count = static_cast<double>(component.beads.size());
@@ -208,44 +210,40 @@ DropletObservation DropletTracker::measure(const Component& component, const Bea
   droplet.species = component.species;
   droplet.volume = count / bulk_density(parameters_, droplet.species);
 
-  Vector3d velocity = Vector3d::Zero();
   droplet.lower = droplet.upper = component.positions.front().cast<double>();
   std::vector<Eigen::Vector2d> wetting;
   for (std::size_t k = 0; k < component.beads.size(); ++k) {
     const Vector3d position = component.positions[k].cast<double>();
-    const Record& v = beads.velocity[component.beads[k]];
     droplet.centroid += position / count;
-    velocity += Vector3d(v.x, v.y, v.z) / count;
     droplet.lower = droplet.lower.cwiseMin(position);
     droplet.upper = droplet.upper.cwiseMax(position);
     if (parameters_.domain.has_wall() && position.z() - wall_plane_ < wetting_height &&
-        block_of(blocks, component.beads[k]).in_range_count(component.beads[k]) >= fewest_rim_neighbours)
+        block_of(pairs.blocks(), component.beads[k]).in_range_count(component.beads[k]) >=
+            fewest_rim_neighbours)
       wetting.push_back(position.head<2>());
   }
+  const Domain& domain = parameters_.domain;
   // Mean over the window. A droplet starts at rest.
   const double weight =
       parameters_.angle_window > 0 ? 1.0 - std::exp(-elapsed / parameters_.angle_window) : 1.0;
-  memory.velocity += weight * (velocity - memory.velocity);
-  droplet.velocity = memory.velocity;
+  const auto flow = [&] {
+    const double height = droplet.centroid.z() - 0.5 * (domain.lower.z() + domain.upper.z());
+    return Vector3d(parameters_.boundaries.shear_rate * height, 0, 0);
+  };
+  memory.velocity += weight * (component.velocity - flow() - memory.velocity);
+  droplet.velocity = memory.velocity + flow();
   droplet.height = droplet.upper.z() - wall_plane_;
   if (wetting.size() >= 3) droplet.footprint = convex_outline(wetting, droplet.footprint_area);
   // The circle is fitted to a cap. Between two plates there is none: no angle is better than a wrong one.
-  const Domain& domain = parameters_.domain;
   const bool reaches_top = domain.has_top_plate() && droplet.upper.z() > domain.upper.z() - wetting_height;
   if (droplet.footprint_area > 0 && !reaches_top && !fills_box(droplet, domain))
     measure_angles(droplet, component, elapsed);
 
   // Reported inside the box, although measured on the unwrapped droplet.
-  for (int axis = 0; axis < 3; ++axis)
-    if (parameters_.domain.periodic(axis)) {
-      const double size = parameters_.domain.size()[axis], lower = parameters_.domain.lower[axis];
-      const double shift = -size * std::floor((droplet.centroid[axis] - lower) / size);
-      droplet.centroid[axis] += shift;
-      droplet.lower[axis] += shift;
-      droplet.upper[axis] += shift;
-      if (axis < 2)
-        for (Eigen::Vector2f& corner : droplet.footprint) corner[axis] += static_cast<float>(shift);
-    }
+  const Vector3d shift = pairs.ghosts().images().shift_into(droplet.centroid);
+  for (Vector3d* place : {&droplet.centroid, &droplet.lower, &droplet.upper}) *place += shift;
+  for (Eigen::Vector2f& corner : droplet.footprint) corner += shift.head<2>().cast<float>();
+  droplet.velocity = memory.velocity + flow();  // of the image that is reported
   return droplet;
 }
 

@@ -6,9 +6,9 @@
 
 #include "engine/archive.h"
 #include "engine/beads.h"
-#include "engine/neighbours.h"
 #include "engine/observe/contact_angle.h"
 #include "engine/observe/snapshot.h"
+#include "engine/pairs.h"
 #include "engine/parameters.h"
 
 namespace dmf::engine {
@@ -29,8 +29,8 @@ class DropletTracker {
 
   /// Needs who is in range now: the density pass must have run on these positions.
   /// @param solvents  the liquid that each bead counts to; empty: its own species.
-  void update(std::uint64_t step, const Beads& beads, const std::vector<NeighbourBlock>& blocks,
-              const std::vector<std::uint8_t>& solvents = {});
+  void update(std::uint64_t step, const Beads& beads, const Pairs& pairs,
+              const std::vector<std::uint8_t>& solvents);
 
   const std::vector<DropletObservation>& droplets() const { return droplets_; }  ///< by id
   std::size_t vapour_beads() const { return vapour_beads_; }
@@ -56,6 +56,7 @@ class DropletTracker {
   struct Component {
     std::vector<std::uint32_t> beads;                 ///< indices
     std::vector<Eigen::Vector3f> positions;           ///< unwrapped: continuous across periodic sides
+    Vector3d velocity = Vector3d::Zero();             ///< of its centroid
     std::map<std::uint32_t, std::size_t> beads_from;  ///< by previous droplet
     std::uint32_t id = 0;
     std::uint32_t species = 0;  ///< number of the liquid
@@ -63,17 +64,16 @@ class DropletTracker {
   /// What is remembered of a droplet between two looks.
   struct Memory {
     std::vector<std::uint32_t> parents;
-    Vector3d velocity = Vector3d::Zero();
+    Vector3d velocity = Vector3d::Zero();  ///< relative to a shear flow where there is one
     RunningAngles angles;
   };
 
-  std::vector<Component> connected_components(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
+  std::vector<Component> connected_components(const Beads& beads, const Pairs& pairs,
                                               const std::vector<std::uint8_t>& solvents) const;
   /// @returns for each droplet that has merged into another one: which.
   std::map<std::uint32_t, std::uint32_t> give_identities(std::uint64_t step,
                                                          std::vector<Component>& components);
-  DropletObservation measure(const Component& component, const Beads& beads,
-                             const std::vector<NeighbourBlock>& blocks, double elapsed);
+  DropletObservation measure(const Component& component, const Pairs& pairs, double elapsed);
   void measure_angles(DropletObservation& droplet, const Component& component, double elapsed);
 
   Parameters parameters_;

@@ -21,11 +21,9 @@ void for_each_pair_stress(const NeighbourBlock& block, const Beads& beads, const
   const PairTable laws = pair_table(parameters);
   const SplineShape<double> spline = spline_shape(parameters.spline);
   for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
-    const bool image = j >= beads.size();
-    const std::uint32_t source = image ? ghosts.source(j - beads.size()) : j;
+    const std::uint32_t source = ghosts.source(j);
     const Record &a = beads.position[i], &v = beads.velocity[i];
-    const Record b = image ? ghosts.position(j - beads.size(), beads) : beads.position[j];
-    const Record w = image ? ghosts.velocity(j - beads.size(), beads.velocity[source]) : beads.velocity[j];
+    const Record b = ghosts.position(j, beads), w = ghosts.velocity(j, beads.velocity[source]);
     const Vector3d apart =
         parameters.domain.nearest_image(Vector3d(double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z));
     const double r = std::max(apart.norm(), 1e-6);

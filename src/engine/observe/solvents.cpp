@@ -7,8 +7,7 @@
 
 namespace dmf::engine {
 
-std::vector<std::uint8_t> solvents(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
-                                   const Bonds& bonds) {
+std::vector<std::uint8_t> solvents(const Beads& beads, const Pairs& pairs, const Bonds& bonds) {
   if (beads.species.empty() || bonds.empty()) return {};
   std::vector<bool> known(beads.size(), true);
   const auto note = [&known](const auto& all) {
@@ -22,8 +21,9 @@ std::vector<std::uint8_t> solvents(const Beads& beads, const std::vector<Neighbo
   for (std::size_t found = 1; found > 0;) {
     found = 0;
     std::vector<std::array<std::uint16_t, most_liquids>> around(beads.size());
-    for (const NeighbourBlock& block : blocks)
-      for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t j) {
+    for (const NeighbourBlock& block : pairs.blocks())
+      for_each_pair_in_range(block, [&](std::uint32_t i, std::uint32_t image) {
+        const std::uint32_t j = pairs.ghosts().source(image);
         if (!known[i] && known[j]) ++around[i][liquids[j]];
       });
     for (std::size_t i = 0; i < beads.size(); ++i) {

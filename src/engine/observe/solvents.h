@@ -4,7 +4,7 @@
 
 #include "engine/beads.h"
 #include "engine/bonds/bonds.h"
-#include "engine/neighbours.h"
+#include "engine/pairs.h"
 
 namespace dmf::engine {
 
@@ -14,7 +14,6 @@ namespace dmf::engine {
 /// most bound beads in range count to. So a surfactant is part of the droplet that it covers, and a membrane
 /// of the liquid around it. What touches no liquid stays with its own species. Empty when there is nothing to
 /// tell apart. Needs who is in range now.
-std::vector<std::uint8_t> solvents(const Beads& beads, const std::vector<NeighbourBlock>& blocks,
-                                   const Bonds& bonds);
+std::vector<std::uint8_t> solvents(const Beads& beads, const Pairs& pairs, const Bonds& bonds);
 
 }  // namespace dmf::engine
