@@ -52,12 +52,14 @@ std::vector<Shape> all_shapes(const StudyOptions& options) {
     tighten(run, own, 25);
     run.stiffness.shear_modulus = 60;
   }
-  {
-    MembraneRun& run = add("tight_red_cell");
+  // The larger one has the same between its faces that are so near to each other, in parts of its thickness
+  // less.
+  for (const double radius : {5.0, 8.0}) {
+    MembraneRun& run = add(radius == 5 ? "tight_red_cell" : "tight_red_cell_R=8");
     run.red_cell = true;
-    run.radius = 5;
-    run.subdivisions = 3;
-    tighten(run, 20, 50);
+    run.radius = radius;
+    run.subdivisions = radius == 5 ? 3 : 4;
+    tighten(run, radius == 5 ? 20 : 8, 50);  // its edges are shorter
   }
   // A sphere whose volume goes down to that of a red cell. The liquid goes through, so that it can.
   for (const bool flat : {true, false}) {
