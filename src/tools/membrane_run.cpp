@@ -52,7 +52,8 @@ bool encloses(const MembraneObservation& membrane, const Vector3d& point) {
   return std::abs(sum) > 2 * pi;
 }
 
-/// Along the shortest axis: thickness near the axis over the largest one of rings around it.
+/// Along the shortest axis: thickness near the axis over the largest one of rings around it. NaN when no bead
+/// is near the axis.
 double centre_thickness(const MembraneObservation& membrane) {
   Eigen::Matrix3d gyration = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : membrane.positions)
@@ -75,7 +76,7 @@ double centre_thickness(const MembraneObservation& membrane) {
   double thickest = 0;
   for (int ring = 0; ring < rings; ++ring)
     if (count[ring] > 0) thickest = std::max(thickest, sum[ring] / count[ring]);
-  return count[0] > 0 ? sum[0] / count[0] / thickest : 0;
+  return count[0] > 0 ? sum[0] / count[0] / thickest : NAN;
 }
 
 }  // namespace

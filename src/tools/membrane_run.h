@@ -33,7 +33,7 @@ struct MembraneResult {
   double reduced_volume = 0;                                ///< mean
   engine::Vector3d gyration = engine::Vector3d::Zero();     ///< mean radii, rising, r_c
   /// Thickness at the axis over the largest thickness: below 1 for a biconcave shape. Of what it looks like
-  /// at the end, along its shortest axis.
+  /// at the end, along its shortest axis; NaN when none of its few beads is near that.
   double centre_thickness = 0;
   double inside_before = 0, inside_after = 0;  ///< liquid beads
   double crossed =
