@@ -152,6 +152,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
         law, law.attraction, separation(pass, pass.position[bead], pass.position[other]),
         liquid_end(pass, bead), liquid_end(pass, other));
   });
+  const double body_range = pass.laws(Species::liquid, Species::microparticle).range();
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const Record& at = pass.position[bead];
@@ -167,7 +168,7 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
                                                              wall_end(other));
                         });
       for_each_in_range(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
-                        block.body_runs.data() + cell.end_body_run, at, wall_law.range(),
+                        block.body_runs.data() + cell.end_body_run, at, body_range,
                         [&](std::uint32_t other, std::uint32_t, const Vector3d& d) {
                           const MdpdLaw<double> law =
                               law_with_body(pass, species, pass.bodies.position[other].w);
