@@ -75,7 +75,8 @@ class Simulation {
   /// would exceed max_beads.
   std::uint32_t add_chains(const ChainPlacement& placement);
 
-  /// Places a membrane. @returns its id. @throws InvalidInput, unchanged, as add_chains.
+  /// Places a membrane. @returns its id. @throws InvalidInput, unchanged, as add_chains, and with two
+  /// dimensions.
   std::uint32_t add_membrane(const MembranePlacement& placement);
 
   /// Takes a droplet's beads out, and every chain and membrane that has a bead in it. @throws InvalidInput
@@ -84,9 +85,9 @@ class Simulation {
 
   /// Places a microparticle at rest. @returns its id.
   /// @throws InvalidInput, unchanged, when a number is out of range (with the range, or the number that would
-  /// work), the liquid is two-dimensional, sheared or between moving sides, its beads could not keep the
-  /// liquid out, the contact would be too stiff for time_step, or it reaches through the wall, out of the
-  /// domain, into liquid or into another microparticle.
+  /// work), its beads could not keep the liquid out, the contact would be too stiff for time_step, it leaves
+  /// the plane of two dimensions, or it reaches through the wall, out of the domain, into liquid or into
+  /// another microparticle.
   std::uint32_t add_microparticle(const MicroparticlePlacement& placement);
 
   /// Takes a microparticle out. @throws InvalidInput when there is none of that id.
