@@ -167,6 +167,7 @@ TEST(ShearedSides, AMicroparticleTurnsHalfAsFastAsTheFlowIsSheared) {
   }
   // Thermal motion turns it with D = k_BT / (8 pi eta R^3) = 0.005, by 1.1 in 120 tau: 0.009 a tau.
   EXPECT_NEAR(turned, 0.5 * rate, 0.03);
+  RecordProperty("turned", std::to_string(turned));
   RecordProperty("crossed", crossed);
 }
 
