@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "engine/bodies/contact.h"
+#include "engine/bonds/mesh.h"
 #include "engine/simulation.h"
 #include "systems.h"
 
@@ -224,6 +225,30 @@ TEST(ShearedSides, AChainHangsTogetherAcrossThem) {
   EXPECT_NEAR(across.contour_length, still.contour_length, 1e-3);
   EXPECT_LT((across.end_to_end - still.end_to_end).norm(), 1e-3);
   EXPECT_NEAR(across.energy, still.energy, 1e-2);
+}
+
+/// A spherical membrane without a liquid, likewise.
+MembraneObservation membrane_at(double raised, int steps) {
+  Parameters parameters = sheared_box(0.6);
+  parameters.domain.upper = {14, 13, 15};
+  parameters.liquid.random_amplitude = 0;
+  parameters.liquid.attraction = -1;
+  Simulation simulation(parameters, ContactAngleCurve::lan2016(), {1, "auto"});
+  for (int k = 0; k < 230; ++k) simulation.step();
+  TriangleMesh mesh = icosphere(1);
+  for (Vector3d& vertex : mesh.vertices) vertex = Vector3d(7, 6, 5 + raised) + 2.5 * vertex;
+  simulation.add_membrane({std::make_shared<const TriangleMesh>(std::move(mesh)), {}});
+  for (int k = 0; k < steps; ++k) simulation.step();
+  return simulation.observe()->membranes.at(0);
+}
+
+TEST(ShearedSides, AMembraneIsClosedAcrossThem) {
+  const MembraneObservation placed = membrane_at(0, 0), still = membrane_at(0, 150),
+                            across = membrane_at(9.3, 150);
+  EXPECT_GT((still.positions[0] - placed.positions[0]).norm(), 0.01);  // it moves
+  EXPECT_NEAR(across.area, still.area, 1e-3 * still.area);
+  EXPECT_NEAR(across.volume, still.volume, 1e-3 * still.volume);
+  EXPECT_LT((across.gyration_radii - still.gyration_radii).norm(), 1e-3);
 }
 
 Parameters half_box() {
