@@ -326,18 +326,10 @@ void Microparticles::touch_each_other() {
       if (between.norm() > first.bounding_radius + second.bounding_radius + adhesion_range) continue;
       for (const ContactSphere& a : first.contact_spheres)
         for (const ContactSphere& b : second.contact_spheres) {
-          const Vector3d arm_a = first.body.orientation * a.offset;
-          const Vector3d arm_b = second.body.orientation * b.offset;
-          const Vector3d d = between + arm_a - arm_b;
-          const double distance = d.norm();
-          if (distance == 0 || distance > a.radius + b.radius + adhesion_range) continue;
-          const Vector3d normal = d / distance;
-          const Vector3d force = force_between(a, b, distance) * normal;
+          const SphereTouch touch = push(first, a, b, second.body.orientation * b.offset - between);
           // One point of action for both, so that angular momentum is kept.
-          first.force += force;
-          first.torque += (arm_a - a.radius * normal).cross(force);
-          second.force -= force;
-          second.torque -= (arm_b + (distance - a.radius) * normal).cross(force);
+          second.force -= touch.force;
+          second.torque -= (between + touch.arm).cross(touch.force);
         }
     }
 }
@@ -356,19 +348,25 @@ void Microparticles::touch_mirror_images() {
         if (std::abs(height) > particle.bounding_radius + 0.5 * adhesion_range) continue;
         for (const ContactSphere& own : particle.contact_spheres)
           for (const ContactSphere& mirrored : particle.contact_spheres) {
-            const Vector3d arm = particle.body.orientation * own.offset;
             Vector3d to_image = particle.body.orientation * mirrored.offset;
             to_image[axis] = -2 * height - to_image[axis];
-            const Vector3d d = arm - to_image;
-            const double distance = d.norm();
-            if (distance == 0 || distance > own.radius + mirrored.radius + adhesion_range) continue;
-            const Vector3d normal = d / distance;
-            const Vector3d force = force_between(own, mirrored, distance) * normal;
-            particle.force += force;
-            particle.torque += (arm - own.radius * normal).cross(force);
+            push(particle, own, mirrored, to_image);
           }
       }
     }
+}
+
+Microparticles::SphereTouch Microparticles::push(Microparticle& particle, const ContactSphere& own,
+                                                 const ContactSphere& other, const Vector3d& to_other) const {
+  const Vector3d arm = particle.body.orientation * own.offset;
+  const Vector3d apart = arm - to_other;
+  const double distance = apart.norm();
+  if (distance == 0 || distance > own.radius + other.radius + adhesion_range) return {};
+  const Vector3d normal = apart / distance;
+  const SphereTouch touch{force_between(own, other, distance) * normal, arm - own.radius * normal};
+  particle.force += touch.force;
+  particle.torque += touch.arm.cross(touch.force);
+  return touch;
 }
 
 double Microparticles::force_between(const ContactSphere& first, const ContactSphere& second,

@@ -103,6 +103,13 @@ class Microparticles {
   /// @param arm  from the centre of mass to the sphere's. @returns the contact, whose forces act now.
   WallContact press(Microparticle& particle, const ContactSphere& sphere, const Vector3d& arm,
                     const Vector3d& normal, double distance) const;
+  struct SphereTouch {
+    Vector3d force = Vector3d::Zero(), arm = Vector3d::Zero();  ///< from the centre of mass to where it acts
+  };
+  /// Adds what a sphere of another microparticle, or of an image, does to one of this one's; nothing out of
+  /// reach. @param to_other  from the centre of mass to the other sphere's centre.
+  SphereTouch push(Microparticle& particle, const ContactSphere& own, const ContactSphere& other,
+                   const Vector3d& to_other) const;
   double force_between(const ContactSphere& first, const ContactSphere& second, double distance) const;
   void touch_each_other();
   void touch_mirror_images();
