@@ -70,7 +70,7 @@ void Forces::density(Beads& beads, const Walls& wall, Microparticles& bodies, Pa
   std::vector<NeighbourBlock>& blocks = pairs.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks.size(); ++b) kernels_.density(pass, blocks[b]);
-  const std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
+  std::vector<NeighbourBlock>& of_bodies = pairs.body_blocks();
 #pragma omp parallel for schedule(dynamic, 1) if (!of_bodies.empty())
   for (std::size_t b = 0; b < of_bodies.size(); ++b) kernels_.body_density(pass, of_bodies[b]);
   add_smooth_densities(pass, bodies, pairs);

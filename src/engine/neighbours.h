@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/cell_grid.h"
@@ -30,9 +31,16 @@ struct NeighbourBlock {
   /// in_range_begin[k] to in_range_begin[k + 1]. Full: a pair stands in the rows of both its beads.
   std::vector<std::uint32_t> in_range_begin;
   std::vector<std::uint16_t> in_range;
+  /// Likewise who of another kind, by index: beads of microparticles around a block of liquid, liquid around
+  /// one of a microparticle. Without rows where no microparticle is near.
+  std::vector<std::uint32_t> foreign_begin, foreign;
 
   std::uint32_t in_range_count(std::uint32_t bead) const {
     return in_range_begin[bead - begin + 1] - in_range_begin[bead - begin];
+  }
+  /// From the first to behind the last of a bead's row of `foreign`.
+  std::pair<const std::uint32_t*, const std::uint32_t*> foreign_in_range(std::uint32_t bead) const {
+    return {foreign.data() + foreign_begin[bead - begin], foreign.data() + foreign_begin[bead - begin + 1]};
   }
 };
 

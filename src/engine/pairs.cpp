@@ -212,8 +212,10 @@ void Pairs::find_bodies(const Microparticles& bodies, const Beads& beads, const 
     blocks_[b].body_runs.clear();
     blocks_[b].body_slots = 0;
     for (NeighbourCell& cell : blocks_[b].cells) find_body_runs(blocks_[b], cell, beads.listed, patched);
+    if (!blocks_[b].body_runs.empty()) blocks_[b].foreign_begin.resize(blocks_[b].end - blocks_[b].begin + 1);
     most = std::max(most, blocks_[b].body_slots);
   }
+  for (NeighbourBlock& block : body_blocks_) block.foreign_begin.resize(block.end - block.begin + 1);
   require_slots(most);
 }
 
@@ -253,7 +255,8 @@ std::size_t Pairs::memory_bytes() const {
     bytes +=
         block.cells.capacity() * sizeof(NeighbourCell) +
         (block.runs.capacity() + block.wall_runs.capacity() + block.body_runs.capacity()) * sizeof(BeadRun) +
-        block.in_range_begin.capacity() * 4 + block.in_range.capacity() * 2;
+        block.in_range_begin.capacity() * 4 + block.in_range.capacity() * 2 +
+        (block.foreign_begin.capacity() + block.foreign.capacity()) * 4;
   return bytes;
 }
 

@@ -63,6 +63,7 @@ class Pairs {
   std::vector<NeighbourBlock>& blocks() { return blocks_; }
   const std::vector<NeighbourBlock>& blocks() const { return blocks_; }
   /// Blocks of beads of microparticles, none of two: their cells are patches, their runs liquid and wall.
+  std::vector<NeighbourBlock>& body_blocks() { return body_blocks_; }
   const std::vector<NeighbourBlock>& body_blocks() const { return body_blocks_; }
   const std::vector<SmoothNeighbours>& smooth_neighbours() const { return smooth_neighbours_; }
   Ghosts& ghosts() { return ghosts_; }

@@ -76,8 +76,12 @@ struct Domain {
   bool has_top_plate() const { return upper_side[2] == Side::wall; }
   /// The shortest of a distance and its periodic images.
   Vector3d nearest_image(Vector3d d) const {
-    for (int axis = 0; axis < 3; ++axis)
-      if (periodic(axis)) d[axis] -= size()[axis] * std::nearbyint(d[axis] / size()[axis]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double period = size()[axis];
+      // Most distances are their own nearest image, and asking costs less than dividing.
+      if (std::abs(d[axis]) > 0.5 * period && periodic(axis))
+        d[axis] -= period * std::nearbyint(d[axis] / period);
+    }
     return d;
   }
   bool contains(const Vector3d& p) const {

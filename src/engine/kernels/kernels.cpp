@@ -41,11 +41,19 @@ namespace dmf::engine::HWY_NAMESPACE {
 
 /// Room for `count` more entries after `used` and for what whole lanes write past them. Grows by a
 /// sixteenth: a block's count hardly changes.
-HWY_INLINE void make_room(std::vector<std::uint16_t>& entries, std::size_t used, std::size_t count) {
+template <class Entry>
+HWY_INLINE void make_room(std::vector<Entry>& entries, std::size_t used, std::size_t count) {
   const std::size_t needed = used + count + 2 * lane_count;
   if (entries.size() >= needed) return;
   entries.reserve(needed + needed / 16);
   entries.resize(needed + needed / 16);
+}
+
+/// The force pass loads whole lanes: behind the last row, too, entries must name something that exists.
+template <class Entry>
+HWY_INLINE void end_rows(std::vector<Entry>& entries, std::size_t used) {
+  make_room(entries, used, 0);
+  std::fill_n(entries.begin() + static_cast<std::ptrdiff_t>(used), 2 * lane_count, Entry{0});
 }
 
 HWY_INLINE float density_from(const float* squared_distances, std::size_t count,
@@ -59,21 +67,40 @@ HWY_INLINE float density_from(const float* squared_distances, std::size_t count,
   return density.total(0);
 }
 
-/// Adds to the densities (w of `moving`) of a cell's beads what beads of another kind near them count.
-HWY_INLINE void add_density(const PairPass& pass, const NeighbourCell& cell, const Record* own,
-                            Record* moving, const Record* others, const BeadRun* run, const BeadRun* end,
-                            const Packed& packed) {
+/// Beads of one kind in a cell, and beads of another kind near it.
+struct Foreign {
+  const Record* own;
+  Record* moving;  ///< of the own; w is their density
+  const Record* others;
+  const BeadRun *run, *end;  ///< of the others
+  bool counted;              ///< in the density
+};
+
+/// Notes who of another kind is in range of each bead of a cell, and adds to its density what those count.
+HWY_INLINE void find_foreign(const PairPass& pass, const Foreign& near, const NeighbourCell& cell,
+                             NeighbourBlock& block, const Packed& packed) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
   const Ranges ranges = ranges_of(law);
+  const Lanes inverse_repulsion_radius(static_cast<float>(law.inverse_repulsion_radius));
   const std::size_t candidates =
-      pack<true>(others, run, end, pass.images, box_around(own, cell.begin, cell.end), ranges.cutoff, packed);
+      near.run == near.end ? 0
+                           : pack<true>(near.others, near.run, near.end, pass.images,
+                                        box_around(near.own, cell.begin, cell.end), ranges.cutoff, packed);
+  std::size_t used = block.foreign_begin[cell.begin - block.begin], distances = 0;
   for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
-    std::size_t distances = 0;
-    sweep<true>(packed, candidates, own[bead], ranges, packed.foreign_in_range, packed.squared_distance,
-                distances);
-    moving[bead].w += static_cast<float>(pass.density_normalization) *
-                      density_from(packed.squared_distance, distances,
-                                   Lanes(static_cast<float>(law.inverse_repulsion_radius)));
+    packed.first_distance[bead - cell.begin] = static_cast<std::uint32_t>(distances);
+    make_room(block.foreign, used, candidates);
+    used += sweep<true>(packed, candidates, near.own[bead], ranges, block.foreign.data() + used,
+                        packed.squared_distance, distances);
+    block.foreign_begin[bead + 1 - block.begin] = static_cast<std::uint32_t>(used);
+  }
+  packed.first_distance[cell.end - cell.begin] = static_cast<std::uint32_t>(distances);
+  if (distances == 0 || !near.counted) return;
+  for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+    const std::uint32_t* first = &packed.first_distance[bead - cell.begin];
+    near.moving[bead].w +=
+        static_cast<float>(pass.density_normalization) *
+        density_from(packed.squared_distance + first[0], first[1] - first[0], inverse_repulsion_radius);
   }
 }
 
@@ -105,25 +132,29 @@ void density(const PairPass& pass, NeighbourBlock& block) {
           static_cast<float>(pass.density_normalization) *
           density_from(packed.squared_distance + first[0], first[1] - first[0], inverse_repulsion_radius);
     }
-    if (cell.first_body_run < cell.end_body_run && pass.bodies.counted_by_liquid)
-      add_density(pass, cell, pass.position, pass.predicted, pass.bodies.position,
-                  &block.body_runs[cell.first_body_run], block.body_runs.data() + cell.end_body_run, packed);
+    if (!block.body_runs.empty())
+      find_foreign(
+          pass,
+          {pass.position, pass.predicted, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
+           block.body_runs.data() + cell.end_body_run, pass.bodies.counted_by_liquid},
+          cell, block, packed);
   }
   block.in_range_begin[block.end - block.begin] = static_cast<std::uint32_t>(used);
-  // The force pass loads whole lanes: behind the last row, too, slots must exist.
-  make_room(block.in_range, used, 0);
-  std::fill_n(block.in_range.begin() + used, 2 * lane_count, std::uint16_t{0});
+  end_rows(block.in_range, used);
+  if (!block.body_runs.empty()) end_rows(block.foreign, block.foreign_begin.back());
 }
 
-void body_density(const PairPass& pass, const NeighbourBlock& block) {
+void body_density(const PairPass& pass, NeighbourBlock& block) {
   const Packed packed = Workbench::of_this_thread().room_for(block);
   for (const NeighbourCell& cell : block.cells) {
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead)
       pass.bodies.moving[bead].w = pass.bodies.own_density[bead];
-    if (cell.first_run < cell.end_run && pass.bodies.count_liquid)
-      add_density(pass, cell, pass.bodies.position, pass.bodies.moving, pass.position,
-                  &block.runs[cell.first_run], block.runs.data() + cell.end_run, packed);
+    find_foreign(pass,
+                 {pass.bodies.position, pass.bodies.moving, pass.position, block.runs.data() + cell.first_run,
+                  block.runs.data() + cell.end_run, pass.bodies.count_liquid},
+                 cell, block, packed);
   }
+  end_rows(block.foreign, block.foreign_begin.back());
 }
 
 // ---- force ----
@@ -151,14 +182,14 @@ HWY_INLINE void add_forces(const PairPass& pass, const Laws& laws, const Receive
   }
 }
 
-/// Names of the packed beads in range of `bead`, in packed.foreign_in_range. @returns how many.
-HWY_INLINE std::size_t find_foreign(const Packed& packed, std::size_t candidates, const Record& bead,
-                                    const Ranges& ranges) {
+/// Indices of the packed wall beads in range of `bead`, in packed.wall_in_range. @returns how many.
+HWY_INLINE std::size_t find_wall(const Packed& packed, std::size_t candidates, const Record& bead,
+                                 const Ranges& ranges) {
   std::size_t no_distances = 0;
   const std::size_t count =
-      sweep<false>(packed, candidates, bead, ranges, packed.foreign_in_range, nullptr, no_distances);
+      sweep<false>(packed, candidates, bead, ranges, packed.wall_in_range, nullptr, no_distances);
   // Whole lanes are loaded: what stands behind the last must name a bead.
-  store_lanes(UnsignedLanes(0), packed.foreign_in_range + count);
+  store_lanes(UnsignedLanes(0), packed.wall_in_range + count);
   return count;
 }
 
@@ -194,7 +225,7 @@ HWY_INLINE void add_liquid_forces(const PairPass& pass, const MdpdLaw<Lanes>& la
 template <PairForce part, DissipativeWeight weight, PairModel model, bool across_periodic>
 HWY_INLINE void add_wall_forces(const PairPass& pass, const MdpdLaw<Lanes>& law, const Receiver& i,
                                 const Packed& packed, std::size_t count, ForceSum& total) {
-  const WallBeads wall{pass, packed.foreign_in_range};
+  const WallBeads wall{pass, packed.wall_in_range};
   if constexpr (model == PairModel::one_liquid) {
     add_forces<part, weight, across_periodic>(pass, law, i, wall, count, total);
   } else {
@@ -226,7 +257,7 @@ HWY_INLINE void force_on_cell(const PairPass& pass, const NeighbourBlock& block,
     add_liquid_forces<part, weight, model, across_periodic>(pass, law, i, in_range,
                                                             block.in_range_count(bead), total);
     if (wall_candidates > 0) {
-      const std::size_t count = find_foreign(packed, wall_candidates, i.position, wall_ranges);
+      const std::size_t count = find_wall(packed, wall_candidates, i.position, wall_ranges);
       const Record moving = pass.wall_motion.relative(i.position, i.moving);
       add_wall_forces<part, weight, model, across_periodic>(
           pass, wall_law, Receiver{i.position, moving, i.key}, packed, count, total);
@@ -243,20 +274,18 @@ HWY_INLINE void add_to(Record& force, const ForceSum& total) {
 
 /// Adds what the microparticles near a cell do to its liquid.
 template <PairForce part, DissipativeWeight weight, PairModel model>
-HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& block, const NeighbourCell& cell,
-                                const Packed& packed) {
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
-  const Ranges ranges = ranges_of(law);
-  const std::size_t candidates = pack<true>(
-      pass.bodies.position, &block.body_runs[cell.first_body_run], block.body_runs.data() + cell.end_body_run,
-      pass.images, box_around(pass.position, cell.begin, cell.end), ranges.cutoff, packed);
+HWY_INLINE void add_body_forces(const PairPass& pass, const NeighbourBlock& block,
+                                const NeighbourCell& cell) {
+  const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::microparticle));
   for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+    const auto [first, last] = block.foreign_in_range(bead);
+    if (first == last) continue;
+    const auto count = static_cast<std::size_t>(last - first);
     ForceSum total;
     const Receiver i{pass.position[bead], pass.predicted[bead], bits_of(Lanes(pass.position[bead].w))};
-    const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-    const BodyBeads beads{pass, packed.foreign_in_range};
+    const BodyBeads beads{pass, first};
     if constexpr (model == PairModel::one_liquid) {
-      add_forces<part, weight, true>(pass, in_lanes(law), i, beads, count, total);
+      add_forces<part, weight, true>(pass, law, i, beads, count, total);
     } else {
       const std::uint32_t number = species_number(i.position);
       const SeenInMixture<BodyBeads> seen{beads, Lanes(pass.bodies.row->share_of_own[number]),
@@ -276,49 +305,43 @@ void force(const PairPass& pass, const NeighbourBlock& block) {
       force_on_cell<part, weight, model, true>(pass, block, cell, packed);
     else
       force_on_cell<part, weight, model, false>(pass, block, cell, packed);
-    if (cell.first_body_run < cell.end_body_run)
-      add_body_forces<part, weight, model>(pass, block, cell, packed);
+    if (cell.first_body_run < cell.end_body_run) add_body_forces<part, weight, model>(pass, block, cell);
   }
 }
 
 /// What liquid and wall do to the beads of microparticles, each by itself.
 template <DissipativeWeight weight, bool mixture>
 void body_force(const PairPass& pass, const NeighbourBlock& block) {
-  const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::microparticle);
-  const MdpdLaw<double>& wall_law = pass.laws(Species::wall, Species::microparticle);
-  const Ranges ranges = ranges_of(law), wall_ranges = ranges_of(wall_law);
+  const MdpdLaw<Lanes> law = in_lanes(pass.laws(Species::liquid, Species::microparticle));
+  const MdpdLaw<Lanes> wall_law = in_lanes(pass.laws(Species::wall, Species::microparticle));
+  const Ranges wall_ranges = ranges_of(pass.laws(Species::wall, Species::microparticle));
   const Packed packed = Workbench::of_this_thread().room_for(block);
+  const auto receiver = [&](std::uint32_t bead) HWY_ATTR {
+    return Receiver{pass.bodies.position[bead], pass.bodies.moving[bead], body_key(UnsignedLanes(bead))};
+  };
   for (const NeighbourCell& cell : block.cells) {
-    const Box box = box_around(pass.bodies.position, cell.begin, cell.end);
-    const auto receiver = [&](std::uint32_t bead) HWY_ATTR {
-      return Receiver{pass.bodies.position[bead], pass.bodies.moving[bead], body_key(UnsignedLanes(bead))};
-    };
-    std::size_t candidates =
-        pack<true>(pass.position, block.runs.data() + cell.first_run, block.runs.data() + cell.end_run,
-                   pass.images, box, ranges.cutoff, packed);
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       ForceSum total;
       const Receiver i = receiver(bead);
-      const std::size_t count = find_foreign(packed, candidates, i.position, ranges);
-      const Liquid<BeadIndices> liquid{pass, {packed.foreign_in_range}, Lanes(i.position.w)};
+      const auto [first, last] = block.foreign_in_range(bead);
+      const auto count = static_cast<std::size_t>(last - first);
+      const Liquid<BeadIndices> liquid{pass, {first}, Lanes(i.position.w)};
       if constexpr (mixture)
         add_forces<PairForce::all, weight, true>(
-            pass, LawsOfMicroparticle<MdpdLaw<Lanes>>(in_lanes(law), *pass.bodies.row), i, liquid, count,
-            total);
+            pass, LawsOfMicroparticle<MdpdLaw<Lanes>>(law, *pass.bodies.row), i, liquid, count, total);
       else
-        add_forces<PairForce::all, weight, true>(pass, in_lanes(law), i, liquid, count, total);
+        add_forces<PairForce::all, weight, true>(pass, law, i, liquid, count, total);
       pass.bodies.liquid_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
     }
-    candidates =
-        pack<true>(pass.wall, block.wall_runs.data() + cell.first_wall_run,
-                   block.wall_runs.data() + cell.end_wall_run, pass.images, box, wall_ranges.cutoff, packed);
+    const std::size_t candidates = pack<true>(
+        pass.wall, block.wall_runs.data() + cell.first_wall_run, block.wall_runs.data() + cell.end_wall_run,
+        pass.images, box_around(pass.bodies.position, cell.begin, cell.end), wall_ranges.cutoff, packed);
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       ForceSum total;
       const Receiver i = receiver(bead);
-      const std::size_t count = find_foreign(packed, candidates, i.position, wall_ranges);
-      const WallUnderBody wall{{pass, packed.foreign_in_range},
-                               Lanes(static_cast<float>(wall_law.attraction))};
-      add_forces<PairForce::conservative, weight, true>(pass, in_lanes(wall_law), i, wall, count, total);
+      const std::size_t count = find_wall(packed, candidates, i.position, wall_ranges);
+      const WallUnderBody wall{{pass, packed.wall_in_range}, wall_law.attraction};
+      add_forces<PairForce::conservative, weight, true>(pass, wall_law, i, wall, count, total);
       pass.bodies.wall_force[bead] = {total.total(0), total.total(1), total.total(2), 0.f};
     }
   }

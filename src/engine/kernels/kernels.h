@@ -59,7 +59,7 @@ struct Kernels {
   /// By PairForce. `all` and `conservative` need the density of all beads.
   std::array<void (*)(const PairPass&, const NeighbourBlock&), 4> force;
   /// The same for a block of beads of microparticles.
-  void (*body_density)(const PairPass&, const NeighbourBlock&);
+  void (*body_density)(const PairPass&, NeighbourBlock&);
   void (*body_force)(const PairPass&, const NeighbourBlock&);
 };
 

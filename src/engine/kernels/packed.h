@@ -11,13 +11,13 @@ namespace dmf::engine {
 
 /// What the kernels lay side by side while they work on one cell. Whole lanes are written behind each array.
 struct Packed {
-  float *x, *y, *z;                 ///< beads near the cell
-  std::uint32_t* name;              ///< and which they are
-  float* squared_distance;          ///< of the pairs of all beads of the cell, row after row
-  std::uint16_t* in_range;          ///< slots, likewise
-  std::uint32_t* first_distance;    ///< of each bead of the cell, and the end
-  std::uint32_t* bead_in_slot;      ///< 0 until numbered
-  std::uint32_t* foreign_in_range;  ///< wall or microparticles
+  float *x, *y, *z;               ///< beads near the cell
+  std::uint32_t* name;            ///< and which they are
+  float* squared_distance;        ///< of the pairs of all beads of the cell, row after row
+  std::uint16_t* in_range;        ///< slots, likewise
+  std::uint32_t* first_distance;  ///< of each bead of the cell, and the end
+  std::uint32_t* bead_in_slot;    ///< 0 until numbered
+  std::uint32_t* wall_in_range;   ///< of one bead
 };
 
 /// Memory of one thread for what is packed.
@@ -56,7 +56,7 @@ class Workbench {
       deal(packed.in_range, pairs, 3072);
       deal(packed.first_distance, beads + 1, 0);
       deal(packed.bead_in_slot, near, 0);
-      deal(packed.foreign_in_range, near, 1024);
+      deal(packed.wall_in_range, near, 1024);
       if (memory_.size() < used) memory_.resize(used);
     }
     std::fill_n(packed.bead_in_slot, near + most_lanes, 0u);

@@ -44,6 +44,14 @@ void for_each_in_range(const PairPass& pass, const Record* beads, const BeadRun*
     }
 }
 
+/// Notes for one bead who of another kind is in its range, as NeighbourBlock::foreign has it.
+void note_foreign(const PairPass& pass, const Record* others, const BeadRun* run, const BeadRun* end,
+                  const Record& at, NeighbourBlock& block) {
+  for_each_in_range(pass, others, run, end, at, pass.laws(Species::liquid, Species::microparticle).range(),
+                    [&](std::uint32_t j, std::uint32_t, const Vector3d&) { block.foreign.push_back(j); });
+  block.foreign_begin.push_back(static_cast<std::uint32_t>(block.foreign.size()));
+}
+
 /// What the beads of `runs` count in the density of a bead at `at`.
 double counted(const PairPass& pass, const Record* beads, const BeadRun* run, const BeadRun* end,
                const Record& at) {
@@ -60,6 +68,8 @@ void density(const PairPass& pass, NeighbourBlock& block) {
   const MdpdLaw<double>& law = pass.laws(Species::liquid, Species::liquid);
   block.in_range.clear();
   block.in_range_begin.assign(1, 0);
+  block.foreign.clear();
+  block.foreign_begin.assign(1, 0);
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
       const BeadRun *run = block.runs.data() + cell.first_run, *end = block.runs.data() + cell.end_run;
@@ -68,21 +78,26 @@ void density(const PairPass& pass, NeighbourBlock& block) {
                           block.in_range.push_back(static_cast<std::uint16_t>(slot));
                         });
       block.in_range_begin.push_back(static_cast<std::uint32_t>(block.in_range.size()));
+      const BeadRun *body_run = block.body_runs.data() + cell.first_body_run,
+                    *body_end = block.body_runs.data() + cell.end_body_run;
+      note_foreign(pass, pass.bodies.position, body_run, body_end, pass.position[bead], block);
       double total = counted(pass, pass.position, run, end, pass.position[bead]);
       if (pass.bodies.counted_by_liquid)
-        total += counted(pass, pass.bodies.position, block.body_runs.data() + cell.first_body_run,
-                         block.body_runs.data() + cell.end_body_run, pass.position[bead]);
+        total += counted(pass, pass.bodies.position, body_run, body_end, pass.position[bead]);
       pass.predicted[bead].w = static_cast<float>(total);
     }
 }
 
-void body_density(const PairPass& pass, const NeighbourBlock& block) {
+void body_density(const PairPass& pass, NeighbourBlock& block) {
+  block.foreign.clear();
+  block.foreign_begin.assign(1, 0);
   for (const NeighbourCell& cell : block.cells)
     for (std::uint32_t bead = cell.begin; bead < cell.end; ++bead) {
+      const BeadRun *run = block.runs.data() + cell.first_run, *end = block.runs.data() + cell.end_run;
+      note_foreign(pass, pass.position, run, end, pass.bodies.position[bead], block);
       double total = pass.bodies.own_density[bead];
       if (pass.bodies.count_liquid)
-        total += counted(pass, pass.position, block.runs.data() + cell.first_run,
-                         block.runs.data() + cell.end_run, pass.bodies.position[bead]);
+        total += counted(pass, pass.position, run, end, pass.bodies.position[bead]);
       pass.bodies.moving[bead].w = static_cast<float>(total);
     }
 }

@@ -44,8 +44,8 @@ Surroundings look_around_smooth(const Microparticle& particle, const SmoothNeigh
   return found;
 }
 
-Surroundings look_around_beads(const Microparticle& particle, const BodyBeads& body_beads, const Beads& beads,
-                               const Pairs& pairs, const Domain& domain, const DropletTracker& tracker) {
+Surroundings look_around_beads(const Microparticle& particle, const Beads& beads, const Pairs& pairs,
+                               const Domain& domain, const DropletTracker& tracker) {
   Surroundings found;
   std::uint32_t wet_beads = 0;
   const bool sphere = particle.placement.points.empty();
@@ -54,21 +54,16 @@ Surroundings look_around_beads(const Microparticle& particle, const BodyBeads& b
   for (const NeighbourBlock& block : pairs.body_blocks()) {
     if (block.begin < particle.first_bead || block.begin >= particle.first_bead + particle.bead_count())
       continue;
-    for (const NeighbourCell& patch : block.cells)
-      for (std::uint32_t k = patch.begin; k < patch.end; ++k) {
-        const Vector3d at = vector_of(body_beads.position[k]);
-        std::uint32_t neighbours = 0;
-        for (std::uint32_t run = patch.first_run; run < patch.end_run; ++run)
-          for (std::uint32_t j = block.runs[run].begin; j < block.runs[run].end; ++j) {
-            const Vector3d liquid = vector_of(pairs.ghosts().position(j, beads));
-            if (domain.nearest_image(liquid - at).squaredNorm() >= 1.0) continue;
-            ++neighbours;
-            ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[pairs.ghosts().source(j)])];
-            if (sphere && domain.nearest_image(liquid - particle.body.position).norm() < deep)
-              deep_beads.push_back(j);
-          }
-        if (neighbours >= Carriage::fewest_neighbours) ++wet_beads;
+    for (std::uint32_t k = block.begin; k < block.end; ++k) {
+      const auto [begin, end] = block.foreign_in_range(k);
+      for (const std::uint32_t* j = begin; j != end; ++j) {
+        ++found.neighbours_of_droplet[tracker.droplet_of(beads.id[pairs.ghosts().source(*j)])];
+        const Vector3d at = vector_of(pairs.ghosts().position(*j, beads));
+        if (sphere && domain.nearest_image(at - particle.body.position).norm() < deep)
+          deep_beads.push_back(*j);
       }
+      if (end - begin >= Carriage::fewest_neighbours) ++wet_beads;
+    }
   }
   std::sort(deep_beads.begin(), deep_beads.end());
   found.leaked =
@@ -81,7 +76,7 @@ Surroundings look_around_beads(const Microparticle& particle, const BodyBeads& b
 Surroundings look_around(const Microparticle& particle, const Microparticles& bodies, const Beads& beads,
                          const Pairs& pairs, const Parameters& parameters, const DropletTracker& tracker) {
   if (!particle.placement.smooth)
-    return look_around_beads(particle, bodies.beads(), beads, pairs, parameters.domain, tracker);
+    return look_around_beads(particle, beads, pairs, parameters.domain, tracker);
   for (const SmoothNeighbours& near : pairs.smooth_neighbours())
     if (&bodies.all()[near.microparticle] == &particle)
       return look_around_smooth(particle, near, beads, pairs.ghosts(), parameters, tracker);
