@@ -70,17 +70,28 @@ double Trajectory::x_dropped_off() const {
   return k ? records_[*k].x : NAN;
 }
 
-double Trajectory::critical_velocity() const {
+Trajectory::Way Trajectory::way_before_drop_off() const {
+  Way way;
   const auto last = drop_off();
-  if (!last) return NAN;
+  if (!last) return way;
   const double end = records_[*last].x - spared_way;
-  std::vector<double> times, values;
   for (std::size_t k = 0; k <= *last && records_[k].x <= end; ++k) {
     if (records_[k].x < end - fitted_way) continue;
-    times.push_back(records_[k].time);
-    values.push_back(records_[k].x);
+    way.times.push_back(records_[k].time);
+    way.places.push_back(records_[k].x);
   }
-  return times.empty() ? NAN : slope_of_parabola(times, values, times.back());
+  return way;
+}
+
+double Trajectory::critical_velocity() const {
+  const Way way = way_before_drop_off();
+  return way.times.empty() ? NAN : slope_of_parabola(way.times, way.places, way.times.back());
+}
+
+double Trajectory::velocity_before_drop_off() const {
+  const Way way = way_before_drop_off();
+  if (way.times.size() < 2) return NAN;
+  return (way.places.back() - way.places.front()) / (way.times.back() - way.times.front());
 }
 
 double Trajectory::time_fastest() const {

@@ -22,6 +22,8 @@ class Trajectory {
   /// it. Fitted over the last `fitted_way` that ends `spared_way` before the place of drop-off, where the
   /// droplet is already letting go.
   double critical_velocity() const;
+  /// The mean over the same way. Scatters less than the slope at the end of a parabola.
+  double velocity_before_drop_off() const;
   static constexpr double fitted_way = 8.0, spared_way = 0.5;  ///< r_c
   /// When it is fastest: the largest slope of parabolas fitted over `fastest_window`. That is where the
   /// trajectory turns from concave to convex.
@@ -43,6 +45,10 @@ class Trajectory {
 
  private:
   std::optional<std::size_t> drop_off() const;
+  struct Way {
+    std::vector<double> times, places;
+  };
+  Way way_before_drop_off() const;  ///< empty: not dropped off
   double first_pass(double x, double TransportRecord::*place) const;
   double mean(double from_time, double TransportRecord::*value) const;
   double last_before(double time, double TransportRecord::*value) const;

@@ -55,6 +55,9 @@ TEST(Trajectory, CriticalVelocityIsTheParabolasSlopeBeforeTheDropOff) {
   // Half an r_c before the place of drop-off, at x = 1.5: t - 100 = sqrt(31.5 / 2e-6).
   const double time = std::sqrt(31.5 / 2e-6);
   EXPECT_NEAR(Trajectory(lost_on_its_way(), 1).critical_velocity(), 2 * 2e-6 * time, 2e-5);
+  // The mean over 8 r_c: t - 100 is sqrt(23.5 / 2e-6) where they begin.
+  EXPECT_NEAR(Trajectory(lost_on_its_way(), 1).velocity_before_drop_off(),
+              8 / (time - std::sqrt(23.5 / 2e-6)), 2e-5);
 }
 
 TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
@@ -63,6 +66,7 @@ TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   const Trajectory way(records, 1);
   EXPECT_TRUE(std::isnan(way.time_dropped_off()));
   EXPECT_TRUE(std::isnan(way.critical_velocity()));
+  EXPECT_TRUE(std::isnan(way.velocity_before_drop_off()));
   EXPECT_TRUE(way.carried_at_end());
 }
 

@@ -130,6 +130,14 @@ Quantity dropped_off_at(std::vector<const char*> lan = {}) {
 Quantity dropped_off_x(std::vector<const char*> lan = {}) {
   return quantity("dropped_off_x", "dropped off at x (r_c)", 2, &Trajectory::x_dropped_off, std::move(lan));
 }
+Quantity critical_velocity(std::vector<const char*> lan = {}) {
+  return quantity("critical_velocity", "critical velocity (r_c/tau)", 5, &Trajectory::critical_velocity,
+                  std::move(lan));
+}
+Quantity velocity_before_drop_off(std::vector<const char*> lan = {}) {
+  return quantity("velocity_before", "mean velocity before the drop-off (r_c/tau)", 5,
+                  &Trajectory::velocity_before_drop_off, std::move(lan));
+}
 Quantity contact_fraction() {
   return quantity("contact_fraction", "in contact with the wall", 3, &Trajectory::contact_fraction);
 }
@@ -228,8 +236,8 @@ const std::vector<Description>& descriptions() {
        40,
        500,
        {picked_up(), dropped_off_at(), dropped_off_x({"20"}),
-        quantity("critical_velocity", "critical velocity (r_c/tau)", 5, &Trajectory::critical_velocity,
-                 {"0.00420", "0.00429", "0.00438", "0.00433"}),
+        critical_velocity({"0.00420", "0.00429", "0.00438", "0.00433"}),
+        velocity_before_drop_off({"0.00420", "0.00429", "0.00438", "0.00433"}),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "never", "never"})}},
       {"dropoff_wetting",
        "strong friction: what attraction keeps the microparticle",
@@ -239,9 +247,8 @@ const std::vector<Description>& descriptions() {
        40,
        500,
        {picked_up(), dropped_off_at({"", "", "never", "never"}),
-        dropped_off_x({"20", "20", "never", "never"}),
-        quantity("critical_velocity", "critical velocity (r_c/tau)", 5, &Trajectory::critical_velocity,
-                 {"0.00420"}),
+        dropped_off_x({"20", "20", "never", "never"}), critical_velocity({"0.00420"}),
+        velocity_before_drop_off({"0.00420"}),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "7 times that of -18"}),
         contact_fraction()}},
       {"passive_delivery",
@@ -251,8 +258,8 @@ const std::vector<Description>& descriptions() {
        8000,
        40,
        600,
-       {picked_up(), dropped_off_at({"2520 to 3480"}), dropped_off_x({"-17.5 to -12.5"}),
-        quantity("critical_velocity", "critical velocity (r_c/tau)", 5, &Trajectory::critical_velocity),
+       {picked_up(), dropped_off_at({"2520 to 3480"}), dropped_off_x({"-17.5 to -12.5"}), critical_velocity(),
+        velocity_before_drop_off(),
         quantity("final_x", "microparticle rests at x (r_c)", 2, &Trajectory::final_x, {"-17.5 to -12.5"}),
         quantity("final_droplet_x", "droplet at the end (r_c)", 2, &Trajectory::final_droplet_x)}},
       {"active_delivery",
