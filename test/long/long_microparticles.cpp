@@ -52,24 +52,24 @@ chip::Scene pickup(double radius, double attraction) {
 }
 
 TEST(Pickup, LargerDropletsCarryItFasterAndLeaveItOnTheWall) {
-  // -30 -> 0: 2,317 for R = 5 and 1,324 for R = 7. The order and the ratio are the claim; ours have been
-  // 2,530 to 2,800 and 1,280.
+  // -30 -> 0: 2,317 for R = 5 and 1,324 for R = 7; ours have been 2,304 +- 238 (6 seeds) and 1,327. On the
+  // wall all the time, at a mean height of 0.99751; ours 0.99772, in contact in 0.945 of all steps.
   const auto at_zero = [](const Trajectory& one) { return one.time_at(0); };
   const auto small = trajectories("pickup_5", pickup(5, -15), 3, 0, 4500);
   const auto large = trajectories("pickup_7", pickup(7, -15), 2, 0, 2500);
   ASSERT_GE(small.size(), 1u);
   ASSERT_GE(large.size(), 1u);
   const double slow = mean_of(small, at_zero), fast = mean_of(large, at_zero);
-  EXPECT_NEAR(slow, 2317, 0.35 * 2317);
-  EXPECT_NEAR(fast / slow, 1324.0 / 2317, 0.15);
+  EXPECT_NEAR(slow, 2317, 0.2 * 2317);
+  EXPECT_NEAR(fast / slow, 1324.0 / 2317, 0.12);
   for (const Trajectory& one : small) {
-    EXPECT_NEAR(one.mean_height(), 1, 0.005);
-    EXPECT_GT(one.contact_fraction(), 0.4);
+    EXPECT_NEAR(one.mean_height(), 0.99751, 0.0005);
+    EXPECT_GT(one.contact_fraction(), 0.9);
   }
 }
 
 TEST(Pickup, AHydrophilicMicroparticleLiftsOffAndIsCarriedFaster) {
-  // Lan: lifted at 150 tau at A_ls -19.5, and carried without friction.
+  // Lan: lifted at 150 tau at A_ls -19.5, and carried without friction; ours at 310.
   const auto runs = trajectories("pickup_wetting", pickup(5, -19.5), 3, 20, 3000);
   ASSERT_GE(runs.size(), 1u);
   for (const Trajectory& one : runs) {

@@ -29,6 +29,7 @@ struct Quantity {
   std::vector<const char*> lan = {};              ///< what Lan found, by value; may end early
   /// How far off Lan's single runs still counts as the same, where a tenth of them says nothing.
   double margin = 0;
+  bool alike = false;  ///< what Lan says of it is not an order: all values of the study have it the same
 };
 
 /// A study: the scene of config/scenes that has its name, a value in it that is varied, and when a run is
@@ -131,12 +132,16 @@ Quantity dropped_off_x(std::vector<const char*> lan = {}) {
   return quantity("dropped_off_x", "dropped off at x (r_c)", 2, &Trajectory::x_dropped_off, std::move(lan));
 }
 Quantity critical_velocity(std::vector<const char*> lan = {}) {
-  return quantity("critical_velocity", "critical velocity (r_c/tau)", 5, &Trajectory::critical_velocity,
-                  std::move(lan));
+  Quantity velocity = quantity("critical_velocity", "critical velocity (r_c/tau)", 5,
+                               &Trajectory::critical_velocity, std::move(lan));
+  velocity.alike = true;
+  return velocity;
 }
 Quantity velocity_before_drop_off(std::vector<const char*> lan = {}) {
-  return quantity("velocity_before", "mean velocity before the drop-off (r_c/tau)", 5,
-                  &Trajectory::velocity_before_drop_off, std::move(lan));
+  Quantity velocity = quantity("velocity_before", "mean velocity before the drop-off (r_c/tau)", 5,
+                               &Trajectory::velocity_before_drop_off, std::move(lan));
+  velocity.alike = true;
+  return velocity;
 }
 Quantity contact_fraction() {
   return quantity("contact_fraction", "in contact with the wall", 3, &Trajectory::contact_fraction);
@@ -325,6 +330,14 @@ std::string label_of(const Description& study, const Value& value) {
   return value.label.empty() ? "" : fmt::format("{}={}", study.varied, value.label);
 }
 
+/// Of ours, or of Lan's.
+double largest_over_smallest(const std::vector<std::pair<double, double>>& pairs,
+                             double std::pair<double, double>::*whose) {
+  const auto [smallest, largest] = std::minmax_element(
+      pairs.begin(), pairs.end(), [whose](const auto& a, const auto& b) { return a.*whose < b.*whose; });
+  return (*largest).*whose / (*smallest).*whose;
+}
+
 Findings run_study(const Description& study, const StudyOptions& options) {
   std::vector<std::string> columns;
   for (const Quantity& quantity : study.quantities) columns.push_back(quantity.name);
@@ -385,7 +398,18 @@ Findings run_study(const Description& study, const StudyOptions& options) {
       if (known && !results.of(label_of(study, study.values[k]), quantity.name).empty())
         pairs.emplace_back(mean, lan);
     }
-    if (pairs.size() > 2)
+    if (pairs.size() < 3) continue;
+    if (quantity.alike)
+      findings.push_back(
+          results
+              .derived("", std::string("range_of_") + quantity.name,
+                       fmt::format("{}: largest over smallest", quantity.title), 2,
+                       {largest_over_smallest(pairs, &std::pair<double, double>::first)})
+              .against_paper(
+                  {fmt::format("{:.2f}", largest_over_smallest(pairs, &std::pair<double, double>::second)),
+                   "Lan"})
+              .within(0.1));
+    else
       findings.push_back(results
                              .derived("", std::string("order_of_") + quantity.name,
                                       fmt::format("{}: order, rank correlation", quantity.title), 2,
