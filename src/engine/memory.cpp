@@ -15,9 +15,9 @@ constexpr double of_program = 10e6;
 constexpr double of_wall_bead = 48;
 constexpr double of_cell = 4;
 constexpr double of_moving_bead = 230;
-constexpr double of_baoab = 24;   ///< more, of a moving bead
-constexpr double of_species = 2;  ///< more, of a moving bead of a mixture
-constexpr double of_body_bead = 340;
+constexpr double of_baoab = 24;          ///< more, of a moving bead
+constexpr double of_species = 2;         ///< more, of a moving bead of a mixture
+constexpr double of_body_bead = 300;     ///< in liquid
 constexpr double of_bonded_bead = 1000;  ///< of a membrane, while it is placed; of a chain less
 constexpr double of_ghost = 100;         ///< its records, whose it is, and its cell
 
