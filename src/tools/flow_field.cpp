@@ -29,6 +29,20 @@ void FlowField::archive(engine::Archive& archive) {
   archive(across_);
 }
 
+Eigen::Vector2d FlowField::mean_velocity(Plane plane, const Eigen::AlignedBox2d& region) const {
+  const std::vector<Cell>& cells = plane == Plane::along ? along_ : across_;
+  double beads = 0;
+  Eigen::Vector2d momentum = Eigen::Vector2d::Zero();
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      if (!region.contains(middle(row, column))) continue;
+      const Cell& one = cells[static_cast<std::size_t>(row * columns + column)];
+      beads += one.beads;
+      momentum += Eigen::Vector2d(one.momentum_s, one.momentum_z);
+    }
+  return momentum / beads;  // 0 / 0 where there was none
+}
+
 std::string FlowField::as_csv() const {
   std::string text = "plane,s,z,density,v_s,v_z\n";
   const double volume = looks_ * cell * cell * 2 * half_thickness;
@@ -37,9 +51,9 @@ std::string FlowField::as_csv() const {
       for (int column = 0; column < columns; ++column) {
         const Cell& one = (*plane)[static_cast<std::size_t>(row * columns + column)];
         if (one.beads <= 0) continue;
-        text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", name, (column + 0.5) * cell - reach,
-                            (row + 0.5) * cell, one.beads / volume, one.momentum_s / one.beads,
-                            one.momentum_z / one.beads);
+        const Eigen::Vector2d at = middle(row, column);
+        text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", name, at.x(), at.y(),
+                            one.beads / volume, one.momentum_s / one.beads, one.momentum_z / one.beads);
       }
   return text;
 }

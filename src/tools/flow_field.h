@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,13 @@ class FlowField {
   void add(const Eigen::Vector3d& relative, const Eigen::Vector3d& velocity);
   /// One more look has been added.
   void count_look() { looks_ += 1; }
+  double looks() const { return looks_; }
   void archive(engine::Archive& archive);
+
+  enum class Plane { along, across };
+  /// Mean velocity, along s and z, of the beads in cells whose middles lie in `region`, s and z as in the CSV
+  /// file; NaN where there was none.
+  Eigen::Vector2d mean_velocity(Plane plane, const Eigen::AlignedBox2d& region) const;
 
   /// "plane,s,z,density,v_s,v_z", a line a cell with liquid: s is x or y of the cell's middle from the
   /// centre, density in beads per r_c^3.
@@ -34,6 +41,9 @@ class FlowField {
     double beads = 0, momentum_s = 0, momentum_z = 0;
   };
   void add(std::vector<Cell>& plane, double s, double z, double across, double v_s, double v_z);
+  static Eigen::Vector2d middle(int row, int column) {
+    return {(column + 0.5) * cell - reach, (row + 0.5) * cell};
+  }
 
   double looks_ = 0;
   std::vector<Cell> along_, across_;

@@ -100,13 +100,18 @@ class Run {
 
   /// To the next look of the tracker.
   void advance() {
-    do simulation_.step();
-    while (simulation_.steps() % simulation_.parameters().observe_interval != 0);
     const bool measuring = course_.phase == Phase::measure;
-    const auto snapshot = simulation_.observe({measuring && how_.flow, false, false});
+    do {
+      simulation_.step();
+      if (measuring && how_.flow && simulation_.steps() % how_.flow_every == 0) sample_flow();
+    } while (simulation_.steps() % simulation_.parameters().observe_interval != 0);
+    const auto snapshot = simulation_.observe();
     if (!largest_droplet(*snapshot)) return enter(Phase::lost);
     follow(*snapshot);
-    if (measuring) sample(*snapshot);
+    if (measuring) {
+      course_.ahead += ahead(*snapshot);
+      course_.looks += 1;
+    }
     next_phase(*snapshot);
     if (course_.phase != Phase::rest) show_gradient();
   }
@@ -185,16 +190,16 @@ class Run {
     return nearest(largest_droplet(snapshot)->centroid.x() - course_.x, 0);
   }
 
-  void sample(const Snapshot& snapshot) {
-    course_.ahead += ahead(snapshot);
-    course_.looks += 1;
-    if (!how_.flow) return;
-    const Vector3d middle = centre(snapshot);
+  void sample_flow() {
+    engine::ObserveRequest with_beads;
+    with_beads.beads = true;
+    const auto snapshot = simulation_.observe(with_beads);
+    const Vector3d middle = centre(*snapshot);
     const double plane = scene_.parameters.domain.lower.z();
-    for (std::size_t k = 0; k < snapshot.positions.size(); ++k) {
-      const Vector3d p = snapshot.positions[k].cast<double>();
+    for (std::size_t k = 0; k < snapshot->positions.size(); ++k) {
+      const Vector3d p = snapshot->positions[k].cast<double>();
       flow_.add({nearest(p.x() - middle.x(), 0), nearest(p.y() - middle.y(), 1), p.z() - plane},
-                snapshot.velocities[k].cast<double>());
+                snapshot->velocities[k].cast<double>());
     }
     flow_.count_look();
   }

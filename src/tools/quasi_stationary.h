@@ -16,13 +16,16 @@ namespace dmf::tools {
 /// microparticle is at `place`, and held there. In a scene without microparticles the droplet's centroid
 /// takes the part of the microparticle.
 struct QuasiStationaryRun {
-  double place = 0;         ///< x of the gradient that the microparticle is held at, r_c
-  double slide = 0.05;      ///< how fast the gradient is slid there, r_c / tau
-  double pickup = 2000;     ///< tau that the pickup may take, from the end of settle_time
-  double ahead = 0.5;       ///< it is over when the droplet's centroid is so many droplet radii ahead
-  double settle = 300;      ///< tau at the place before measuring
-  double measure = 2000;    ///< tau
-  bool flow = false;        ///< look at the flow too
+  double place = 0;       ///< x of the gradient that the microparticle is held at, r_c
+  double slide = 0.05;    ///< how fast the gradient is slid there, r_c / tau
+  double pickup = 2000;   ///< tau that the pickup may take, from the end of settle_time
+  double ahead = 0.5;     ///< it is over when the droplet's centroid is so many droplet radii ahead
+  double settle = 300;    ///< tau at the place before measuring
+  double measure = 2000;  ///< tau
+  bool flow = false;      ///< look at the flow too
+  /// Steps between two looks at the flow: beads forget their thermal velocity, which hides it, in some 0.1
+  /// tau.
+  std::uint64_t flow_every = 10;
   std::string folder, key;  ///< where the run keeps its state while it is under way (SavedRun)
   double save_every = 60;   ///< s of wall time
   /// Called after each look with the time, before the state is saved: what it throws ends the run as a kill

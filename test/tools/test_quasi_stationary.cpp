@@ -55,6 +55,17 @@ TEST(QuasiStationary, HeldDropletRunsTowardsTheWettingSideAndItsLiquidWithIt) {
   EXPECT_NEAR(momentum / beads, held.velocity, 0.5 * held.velocity);
 }
 
+TEST(QuasiStationary, FlowIsLookedAtAsOftenAsAsked) {
+  QuasiStationaryRun run = short_run("often");
+  run.measure = 5;
+  const QuasiStationary often = run_quasi_stationary(runway(), 1, run);
+  run.key = "seldom";
+  run.flow_every = 50;
+  const QuasiStationary seldom = run_quasi_stationary(runway(), 1, run);
+  EXPECT_EQ(often.flow.looks(), 50);
+  EXPECT_EQ(seldom.flow.looks(), 10);
+}
+
 TEST(QuasiStationary, KilledEndsWithTheNumbersOfAnUninterruptedRun) {
   const QuasiStationary whole = run_quasi_stationary(runway(), 2, short_run("whole"));
   QuasiStationaryRun run = short_run("killed");
@@ -104,6 +115,20 @@ TEST(FlowField, SumsBeadsIntoBothPlanesAndLeavesOthersOut) {
   flow.add({9, 9, 3}, {1, 1, 1});              // in neither
   flow.count_look();
   EXPECT_EQ(flow.as_csv(), "plane,s,z,density,v_s,v_z\nxz,2.25,0.25,4,1,0\n");
+}
+
+TEST(FlowField, MeansOverARectangleWeighEveryBeadAlike) {
+  FlowField flow;
+  flow.add({0.5, 1.2, 0.3}, {9, 3, 0});
+  flow.add({0.5, 1.7, 0.3}, {9, 0, 3});
+  flow.add({0.5, 1.7, 0.4}, {9, 0, 3});
+  flow.add({0.5, 1.7, 2.3}, {9, 9, 9});   // above it
+  flow.add({0.5, -1.2, 0.3}, {9, 9, 9});  // on the other side
+  const auto mean = [&flow](double from, double to) {
+    return flow.mean_velocity(FlowField::Plane::across, {Eigen::Vector2d(from, 0), Eigen::Vector2d(to, 2)});
+  };
+  EXPECT_EQ(mean(1, 2), Eigen::Vector2d(1, 2));
+  EXPECT_TRUE(std::isnan(mean(3, 4).x()));
 }
 
 }  // namespace
