@@ -103,7 +103,10 @@ def plot_transport(folder, name):
 def plot_forces(folder):
     rows = {}
     for row in findings_of(folder, "forces"):
-        friction, x = re.fullmatch(r"f=([^/]*)/\S+ x=(\S+).*", row["case"]).groups()
+        place = re.fullmatch(r"f=([^/]*)/\S+ x=(\S+).*", row["case"])
+        if not place:  # of several places
+            continue
+        friction, x = place.groups()
         rows.setdefault(friction, {}).setdefault(row["quantity"], []).append(
             (float(x), row["mean"], row["standard_deviation"]))
     figure, axes = plt.subplots(1, len(rows), figsize=(4 * len(rows), 4), constrained_layout=True, squeeze=False)

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
 #include "tools/cases.h"
 #include "tools/quasi_stationary.h"
 
@@ -22,6 +26,63 @@ const std::vector<Series>& series() {
 
 std::string label_of(const Series& one, double place) {
   return fmt::format("f={}/{} x={}", one.static_friction, one.rolling_friction, place);
+}
+
+/// What Lan says of how forces and velocity go together (4.1.3): with the friction at one place, and along
+/// the way at one friction.
+void compare_trends(const Results& results, Findings& findings) {
+  struct Point {
+    double friction, place, velocity, drive;
+  };
+  std::vector<Point> measured;
+  for (const Series& one : series())
+    for (const double place : one.places) {
+      const std::string label = label_of(one, place);
+      const Point point{one.static_friction, place, results.mean(label, "velocity").mean,
+                        results.mean(label, "drive_x").mean};
+      if (!results.of(label, "velocity").empty() && std::isfinite(point.velocity)) measured.push_back(point);
+    }
+  const auto order = [&](const std::vector<Point>& points, const std::string& of, const char* quantity,
+                         const char* title, double Point::*what, double Point::*against, const char* lan) {
+    if (points.size() < 3) return;
+    std::vector<std::pair<double, double>> pairs;
+    for (const Point& point : points) pairs.emplace_back(point.*what, point.*against);
+    findings.push_back(
+        results.derived(of, quantity, title, 2, {rank_correlation(pairs)}).against_paper({lan, "Lan"}));
+  };
+  const auto where = [&measured](double Point::*what, double value) {
+    std::vector<Point> found;
+    std::copy_if(measured.begin(), measured.end(), std::back_inserter(found),
+                 [what, value](const Point& point) { return point.*what == value; });
+    return found;
+  };
+  for (const double place : {-5.0, 15.0}) {
+    const std::vector<Point> here = where(&Point::place, place);
+    const std::string of = fmt::format("x={}", place);
+    order(here, of, "drive_with_friction", "drive with f_s: rank correlation", &Point::drive,
+          &Point::friction, "1");
+    order(here, of, "velocity_with_friction", "velocity with f_s: rank correlation", &Point::velocity,
+          &Point::friction, "-1");
+  }
+  for (const Series& one : series()) {
+    const std::vector<Point> way = where(&Point::friction, one.static_friction);
+    const std::string of = fmt::format("f={}/{}", one.static_friction, one.rolling_friction);
+    order(way, of, "drive_with_velocity", "drive with velocity along x: rank correlation", &Point::drive,
+          &Point::velocity, "1");
+    if (one.static_friction > 0.4)
+      order(way, of, "velocity_with_x", "velocity with x: rank correlation", &Point::velocity, &Point::place,
+            "1");
+    else if (way.size() == one.places.size() && way.size() > 2)
+      // It rises first and falls then.
+      findings.push_back(results
+                             .derived(of, "fastest_at", "fastest at x (r_c)", 0,
+                                      {std::max_element(way.begin(), way.end(),
+                                                        [](const Point& a, const Point& b) {
+                                                          return a.velocity < b.velocity;
+                                                        })
+                                           ->place})
+                             .against_paper({"-10 to 10", "Lan: between the ends"}));
+  }
 }
 
 }  // namespace
@@ -80,6 +141,7 @@ Findings study_forces(const StudyOptions& options) {
       findings.push_back(
           results.finding(label, "droplet_ahead", "the droplet's centre is ahead by (r_c)", 2));
     }
+  compare_trends(results, findings);
   return findings;
 }
 
