@@ -285,11 +285,13 @@ const std::vector<Description>& descriptions() {
          [](const Records& records) { return Trajectory(records, 1).droplet_x_at(11999); },
          {"1"}},
         dropped_off_at({"12000 to 12800"}),
+        // The region he designates: the text has it end at 1.5 and at -1.5, as it has it wait at 2.3 and
+        // -2.3.
         {"x_13000",
          "microparticle at the end, x (r_c)",
          2,
          [](const Records& records) { return Trajectory(records, 1).x_at(13000); },
-         {"about 1.5"}},
+         {"-2 to 2"}},
         {"droplet_x_13000", "droplet at the end, x (r_c)", 2,
          [](const Records& records) { return Trajectory(records, 1).droplet_x_at(13000); }}}},
       {"thermal",
