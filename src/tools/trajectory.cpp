@@ -70,28 +70,36 @@ double Trajectory::x_dropped_off() const {
   return k ? records_[*k].x : NAN;
 }
 
-Trajectory::Way Trajectory::way_before_drop_off() const {
-  Way way;
+std::vector<TransportRecord> Trajectory::way_before_drop_off() const {
+  std::vector<TransportRecord> way;
   const auto last = drop_off();
   if (!last) return way;
   const double end = records_[*last].x - spared_way;
-  for (std::size_t k = 0; k <= *last && records_[k].x <= end; ++k) {
-    if (records_[k].x < end - fitted_way) continue;
-    way.times.push_back(records_[k].time);
-    way.places.push_back(records_[k].x);
-  }
+  for (std::size_t k = 0; k <= *last && records_[k].x <= end; ++k)
+    if (records_[k].x >= end - fitted_way) way.push_back(records_[k]);
   return way;
 }
 
 double Trajectory::critical_velocity() const {
-  const Way way = way_before_drop_off();
-  return way.times.empty() ? NAN : slope_of_parabola(way.times, way.places, way.times.back());
+  std::vector<double> times, places;
+  for (const TransportRecord& record : way_before_drop_off()) {
+    times.push_back(record.time);
+    places.push_back(record.x);
+  }
+  return times.empty() ? NAN : slope_of_parabola(times, places, times.back());
 }
 
 double Trajectory::velocity_before_drop_off() const {
-  const Way way = way_before_drop_off();
-  if (way.times.size() < 2) return NAN;
-  return (way.places.back() - way.places.front()) / (way.times.back() - way.times.front());
+  const std::vector<TransportRecord> way = way_before_drop_off();
+  if (way.size() < 2) return NAN;
+  return (way.back().x - way.front().x) / (way.back().time - way.front().time);
+}
+
+double Trajectory::drive_before_drop_off() const {
+  const std::vector<TransportRecord> way = way_before_drop_off();
+  double sum = 0;
+  for (const TransportRecord& record : way) sum += record.drive_x;
+  return way.empty() ? NAN : sum / static_cast<double>(way.size());
 }
 
 double Trajectory::time_fastest() const {

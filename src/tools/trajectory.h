@@ -24,6 +24,8 @@ class Trajectory {
   double critical_velocity() const;
   /// The mean over the same way. Scatters less than the slope at the end of a parabola.
   double velocity_before_drop_off() const;
+  /// Mean force of the liquid along x over the same way, k_BT / r_c: with what it was held until then.
+  double drive_before_drop_off() const;
   static constexpr double fitted_way = 8.0, spared_way = 0.5;  ///< r_c
   /// When it is fastest: the largest slope of parabolas fitted over `fastest_window`. That is where the
   /// trajectory turns from concave to convex.
@@ -45,10 +47,7 @@ class Trajectory {
 
  private:
   std::optional<std::size_t> drop_off() const;
-  struct Way {
-    std::vector<double> times, places;
-  };
-  Way way_before_drop_off() const;  ///< empty: not dropped off
+  std::vector<TransportRecord> way_before_drop_off() const;  ///< empty: not dropped off
   double first_pass(double x, double TransportRecord::*place) const;
   double mean(double from_time, double TransportRecord::*value) const;
   double last_before(double time, double TransportRecord::*value) const;

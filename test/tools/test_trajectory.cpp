@@ -60,6 +60,12 @@ TEST(Trajectory, CriticalVelocityIsTheParabolasSlopeBeforeTheDropOff) {
               8 / (time - std::sqrt(23.5 / 2e-6)), 2e-5);
 }
 
+TEST(Trajectory, DriveBeforeTheDropOffIsOfTheSameWay) {
+  auto records = lost_on_its_way();
+  for (auto& record : records) record.drive_x = record.x < -6.5 || record.x > 1.5 ? 1000 : 40;
+  EXPECT_NEAR(Trajectory(records, 1).drive_before_drop_off(), 40, 1e-9);
+}
+
 TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   auto records = lost_on_its_way();
   records.back().carrier = 1;  // its satellite has merged into the droplet
@@ -67,6 +73,7 @@ TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   EXPECT_TRUE(std::isnan(way.time_dropped_off()));
   EXPECT_TRUE(std::isnan(way.critical_velocity()));
   EXPECT_TRUE(std::isnan(way.velocity_before_drop_off()));
+  EXPECT_TRUE(std::isnan(way.drive_before_drop_off()));
   EXPECT_TRUE(way.carried_at_end());
 }
 

@@ -110,6 +110,10 @@ Quantity velocity_before_drop_off(std::vector<const char*> lan = {}) {
   velocity.alike = true;
   return velocity;
 }
+Quantity drive_before_drop_off() {
+  return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
+                  &Trajectory::drive_before_drop_off);
+}
 Quantity contact_fraction() {
   return quantity("contact_fraction", "in contact with the wall", 3, &Trajectory::contact_fraction);
 }
@@ -210,7 +214,7 @@ const std::vector<TransportStudy>& transport_table() {
        500,
        {picked_up(), dropped_off_at(), dropped_off_x({"20"}),
         critical_velocity({"0.00420", "0.00429", "0.00438", "0.00433"}),
-        velocity_before_drop_off({"0.00420", "0.00429", "0.00438", "0.00433"}),
+        velocity_before_drop_off({"0.00420", "0.00429", "0.00438", "0.00433"}), drive_before_drop_off(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "never", "never"})}},
       {"dropoff_wetting",
        "strong friction: what attraction keeps the microparticle",
@@ -221,7 +225,7 @@ const std::vector<TransportStudy>& transport_table() {
        500,
        {picked_up(), dropped_off_at({"", "", "never", "never"}),
         dropped_off_x({"20", "20", "never", "never"}), critical_velocity({"0.00420"}),
-        velocity_before_drop_off({"0.00420"}),
+        velocity_before_drop_off({"0.00420"}), drive_before_drop_off(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "7 times that of -18"}),
         contact_fraction()}},
       {"passive_delivery",
@@ -232,7 +236,7 @@ const std::vector<TransportStudy>& transport_table() {
        40,
        600,
        {picked_up(), dropped_off_at({"2520 to 3480"}), dropped_off_x({"-17.5 to -12.5"}), critical_velocity(),
-        velocity_before_drop_off(),
+        velocity_before_drop_off(), drive_before_drop_off(),
         quantity("final_x", "microparticle rests at x (r_c)", 2, &Trajectory::final_x, {"-17.5 to -12.5"}),
         quantity("final_droplet_x", "droplet at the end (r_c)", 2, &Trajectory::final_droplet_x)}},
       {"active_delivery",
