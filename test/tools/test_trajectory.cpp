@@ -66,6 +66,15 @@ TEST(Trajectory, DriveBeforeTheDropOffIsOfTheSameWay) {
   EXPECT_NEAR(Trajectory(records, 1).drive_before_drop_off(), 40, 1e-9);
 }
 
+TEST(Trajectory, TimePulledCountsMeansNotRecords) {
+  auto records = lost_on_its_way();  // from t = 100 to 4100
+  for (std::size_t k = 0; k < records.size(); ++k)
+    records[k].drive_x = (records[k].time > 1100 && records[k].time <= 2100 ? 40 : 20) + (k % 2 ? 90 : -90);
+  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(37), 1000);
+  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(19), 4000);
+  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(50), 0);
+}
+
 TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   auto records = lost_on_its_way();
   records.back().carrier = 1;  // its satellite has merged into the droplet
@@ -74,6 +83,7 @@ TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   EXPECT_TRUE(std::isnan(way.critical_velocity()));
   EXPECT_TRUE(std::isnan(way.velocity_before_drop_off()));
   EXPECT_TRUE(std::isnan(way.drive_before_drop_off()));
+  EXPECT_TRUE(std::isnan(way.time_pulled_with(0)));
   EXPECT_TRUE(way.carried_at_end());
 }
 

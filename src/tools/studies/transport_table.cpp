@@ -114,6 +114,11 @@ Quantity drive_before_drop_off() {
   return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
                   &Trajectory::drive_before_drop_off);
 }
+/// No droplet has lost one that it pulled with less (docs/validation.md, "Where droplets lose it").
+Quantity time_pulled_hard() {
+  return {"pulled_hard", "pulled with 37 k_BT/r_c or more for (tau)", 0,
+          [](const Records& records) { return Trajectory(records, 1).time_pulled_with(37); }};
+}
 Quantity contact_fraction() {
   return quantity("contact_fraction", "in contact with the wall", 3, &Trajectory::contact_fraction);
 }
@@ -215,6 +220,7 @@ const std::vector<TransportStudy>& transport_table() {
        {picked_up(), dropped_off_at(), dropped_off_x({"20"}),
         critical_velocity({"0.00420", "0.00429", "0.00438", "0.00433"}),
         velocity_before_drop_off({"0.00420", "0.00429", "0.00438", "0.00433"}), drive_before_drop_off(),
+        time_pulled_hard(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "never", "never"})}},
       {"dropoff_wetting",
        "strong friction: what attraction keeps the microparticle",
@@ -225,7 +231,7 @@ const std::vector<TransportStudy>& transport_table() {
        500,
        {picked_up(), dropped_off_at({"", "", "never", "never"}),
         dropped_off_x({"20", "20", "never", "never"}), critical_velocity({"0.00420"}),
-        velocity_before_drop_off({"0.00420"}), drive_before_drop_off(),
+        velocity_before_drop_off({"0.00420"}), drive_before_drop_off(), time_pulled_hard(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "7 times that of -18"}),
         contact_fraction()}},
       {"passive_delivery",
@@ -236,7 +242,7 @@ const std::vector<TransportStudy>& transport_table() {
        40,
        600,
        {picked_up(), dropped_off_at({"2520 to 3480"}), dropped_off_x({"-17.5 to -12.5"}), critical_velocity(),
-        velocity_before_drop_off(), drive_before_drop_off(),
+        velocity_before_drop_off(), drive_before_drop_off(), time_pulled_hard(),
         quantity("final_x", "microparticle rests at x (r_c)", 2, &Trajectory::final_x, {"-17.5 to -12.5"}),
         quantity("final_droplet_x", "droplet at the end (r_c)", 2, &Trajectory::final_droplet_x)}},
       {"active_delivery",
