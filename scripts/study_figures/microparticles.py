@@ -162,6 +162,9 @@ def plot_inner_flow(folder):
                 s, z, _, v_s, v_z = cells
                 arrows = axis.quiver(s, z, v_s, v_z, np.hypot(v_s, v_z), cmap="viridis", angles="xy", width=0.003)
                 figure.colorbar(arrows, ax=axis, label=r"$|v|$ ($r_c/\tau$)")
+                # Room for the arrows that point out of the droplet.
+                axis.set_xlim(s.min() - 2, s.max() + 2)
+                axis.set_ylim(-1, z.max() + 1)
             if title.startswith("with"):
                 axis.add_patch(plt.Circle((0, 1), 1, color="tab:green", alpha=0.4))
             axis.axhline(0, color="tab:red", linewidth=3)

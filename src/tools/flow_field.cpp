@@ -40,7 +40,7 @@ Eigen::Vector2d FlowField::mean_velocity(Plane plane, const Eigen::AlignedBox2d&
       beads += one.beads;
       momentum += Eigen::Vector2d(one.momentum_s, one.momentum_z);
     }
-  return momentum / beads;  // 0 / 0 where there was none
+  return beads > 0 ? Eigen::Vector2d(momentum / beads) : Eigen::Vector2d::Constant(NAN);
 }
 
 std::string FlowField::as_csv() const {
