@@ -70,15 +70,14 @@ TEST(Pickup, LargerDropletsCarryItFasterAndLeaveItOnTheWall) {
 }
 
 TEST(Pickup, AHydrophilicMicroparticleLiftsOffAndIsCarriedFaster) {
-  // Lan: lifted at 150 tau at A_ls -19.5 and at 1,153 at -18, and carried without friction from then on.
-  // Ours: 220 to 460 (4 seeds), between x = -29 and -22, picked up between 115 and 225; -18 at 1,205 and x =
-  // -11.8.
+  // Lan: lifted at 150 tau at A_ls -19.5 and at 1,153 at -18, and carried without friction from then on. Ours
+  // is later, 165 to 460 (6 seeds); -18 at 775 to 1,315 (3 seeds).
   const auto runs = trajectories("pickup_wetting", pickup(5, -19.5), 3, 20, 3000);
   ASSERT_GE(runs.size(), 1u);
   for (const Trajectory& one : runs) {
     EXPECT_LT(one.time_lifted(), 0.5 * 1153);
     EXPECT_LT(one.x_at(one.time_lifted()), -15);
-    EXPECT_LT(one.contact_fraction(), 0.2);
+    EXPECT_LT(one.contact_fraction(), 0.1);
     EXPECT_LT(one.time_at(20), 2500);
   }
 }
