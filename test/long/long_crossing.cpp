@@ -18,7 +18,7 @@ TEST(DropletOfRadiusFive, CrossesTheGradientInLansTimeWithinAQuarter) {
       two_at_a_time("crossing", 4), 401);
   const MeanAndSpread total = results.mean("", "to_40");
   RecordProperty("mean_crossing_time", fmt::format("{:.0f}", total.mean));
-  // 2,973 in the paper. Why ours is faster: docs/validation.md.
+  // 2,973 in the paper. Why ours is faster: docs/validation/droplets.md.
   EXPECT_NEAR(total.mean, 2973, 0.25 * 2973);
   // The stochastic spread of one run is a few percent; a mean that moves by more has another cause.
   EXPECT_LT(total.deviation, 0.1 * total.mean);

@@ -11,7 +11,7 @@ namespace dmf::tools {
 namespace {
 
 /// Trajectories of a scene over seeds, two at a time. A droplet may pass a microparticle by
-/// (docs/validation.md): those that did are left out.
+/// (docs/validation/microparticles.md): those that did are left out.
 std::vector<Trajectory> trajectories(const std::string& name, const chip::Scene& scene, int seeds,
                                      double goal, double limit) {
   const StudyOptions options = two_at_a_time(name, seeds);

@@ -25,7 +25,7 @@ TEST(Protocols, WorkOnFullResolutionOverSeeds) {
     EXPECT_GT(worked, 0) << trial.name << " has worked with no seed";
     all += worked;
   }
-  // All worked when this was written (docs/validation.md). A droplet that is let go between two electrodes
+  // All worked when this was written (docs/validation/protocols.md). A droplet let go between two electrodes
   // may need more tries than a protocol has: seldom.
   EXPECT_GE(all, 0.9 * static_cast<double>(trials.size() * seeds));
 }

@@ -47,8 +47,8 @@ TEST(Surfactant, WhoseTailsHoldOnToAMicroparticleDrawsItIntoTheFilm) {
   const FloatingResult alike = run_floating(how);
   how.tail_attraction = -25;
   const FloatingResult held = run_floating(how);
-  // 0.35 and 0.60 of it, 0.80 and 0.13 r_c over the surface; in the 160 tau of docs/validation.md the second
-  // sinks further. From look to look an immersion spreads by 0.02.
+  // 0.35 and 0.60 of it, 0.80 and 0.13 r_c over the surface; in the 160 tau of docs/validation/bonds.md the
+  // second sinks further. From look to look an immersion spreads by 0.02.
   EXPECT_NEAR(alike.immersion, 0.36, 0.08);
   EXPECT_GT(held.immersion, alike.immersion + 0.15);
   EXPECT_LT(held.height, alike.height - 0.4);

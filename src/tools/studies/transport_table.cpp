@@ -114,7 +114,7 @@ Quantity drive_before_drop_off() {
   return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
                   &Trajectory::drive_before_drop_off);
 }
-/// 37 is read off the runs themselves (docs/validation.md, "Where droplets lose it"), not off a paper.
+/// 37 is read off the runs themselves (docs/validation/microparticles.md), not off a paper.
 Quantity time_pulled_hard() {
   return {"pulled_hard", "pulled with 37 k_BT/r_c or more for (tau)", 0,
           [](const Records& records) { return Trajectory(records, 1).time_pulled_with(37); }};
