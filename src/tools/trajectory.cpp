@@ -102,17 +102,12 @@ double Trajectory::drive_before_drop_off() const {
   return way.empty() ? NAN : sum / static_cast<double>(way.size());
 }
 
-double Trajectory::time_pulled_with(double drive) const {
-  const double end = time_dropped_off();
-  if (std::isnan(end)) return NAN;
-  double pulled = 0;
-  for (double from = time_picked_up(); from + drive_window <= end; from += drive_window) {
-    double sum = 0, count = 0;
-    for (const TransportRecord& record : records_)
-      if (record.time > from && record.time <= from + drive_window) sum += record.drive_x, count += 1;
-    if (sum >= drive * count) pulled += drive_window;
-  }
-  return pulled;
+double Trajectory::held_with() const {
+  const double end = time_dropped_off() - letting_go, start = end - held_window;
+  double sum = 0, count = 0;
+  for (const TransportRecord& record : records_)
+    if (record.time > start && record.time <= end) sum += record.drive_x, count += 1;
+  return start >= time_picked_up() ? sum / count : NAN;
 }
 
 double Trajectory::time_fastest() const {

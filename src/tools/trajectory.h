@@ -26,11 +26,11 @@ class Trajectory {
   double velocity_before_drop_off() const;
   /// Mean force of the liquid along x over the same way, k_BT / r_c: with what it was held until then.
   double drive_before_drop_off() const;
-  /// How long the liquid has pulled it along x with `drive` or more, k_BT / r_c, from the pickup to the
-  /// drop-off, tau: means over `drive_window`, so that the thermal forces don't count.
-  double time_pulled_with(double drive) const;
-  static constexpr double drive_window = 500.0;                ///< tau
-  static constexpr double fitted_way = 8.0, spared_way = 0.5;  ///< r_c
+  /// The last force of the liquid along x that held it, k_BT / r_c: the mean over `held_window` that ends
+  /// `letting_go` before the drop-off, for as long can the droplet draw out the thread that breaks.
+  double held_with() const;
+  static constexpr double held_window = 500.0, letting_go = 500.0;  ///< tau
+  static constexpr double fitted_way = 8.0, spared_way = 0.5;       ///< r_c
   /// When it is fastest: the largest slope of parabolas fitted over `fastest_window`. That is where the
   /// trajectory turns from concave to convex.
   double time_fastest() const;

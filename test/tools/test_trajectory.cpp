@@ -66,13 +66,12 @@ TEST(Trajectory, DriveBeforeTheDropOffIsOfTheSameWay) {
   EXPECT_NEAR(Trajectory(records, 1).drive_before_drop_off(), 40, 1e-9);
 }
 
-TEST(Trajectory, TimePulledCountsMeansNotRecords) {
+TEST(Trajectory, HeldWithTheMeanForceBeforeTheDropletLetsGo) {
   auto records = lost_on_its_way();  // from t = 100 to 4100
-  for (std::size_t k = 0; k < records.size(); ++k)
-    records[k].drive_x = (records[k].time > 1100 && records[k].time <= 2100 ? 40 : 20) + (k % 2 ? 90 : -90);
-  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(37), 1000);
-  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(19), 4000);
-  EXPECT_EQ(Trajectory(records, 1).time_pulled_with(50), 0);
+  for (auto& record : records) record.drive_x = record.time > 3100 && record.time <= 3600 ? 50 : 10;
+  EXPECT_NEAR(Trajectory(records, 1).held_with(), 50, 1e-9);
+  for (auto& record : records) record.picked_up = record.time == 3105;
+  EXPECT_TRUE(std::isnan(Trajectory(records, 1).held_with())) << "it has not been held for so long";
 }
 
 TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
@@ -83,7 +82,7 @@ TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   EXPECT_TRUE(std::isnan(way.critical_velocity()));
   EXPECT_TRUE(std::isnan(way.velocity_before_drop_off()));
   EXPECT_TRUE(std::isnan(way.drive_before_drop_off()));
-  EXPECT_TRUE(std::isnan(way.time_pulled_with(0)));
+  EXPECT_TRUE(std::isnan(way.held_with()));
   EXPECT_TRUE(way.carried_at_end());
 }
 

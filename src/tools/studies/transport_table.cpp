@@ -51,6 +51,14 @@ std::vector<VariedValue> frictions(const std::vector<std::pair<double, double>>&
   return result;
 }
 
+std::vector<VariedValue> rest_angles(const std::vector<double>& values) {
+  std::vector<VariedValue> result;
+  for (const double angle : values)
+    result.push_back(
+        {fmt::format("{}", angle), [angle](chip::Scene& scene) { scene.electrowetting.rest_angle = angle; }});
+  return result;
+}
+
 /// At the same friction between liquid beads: phi^2 = 2 gamma k_BT.
 std::vector<VariedValue> temperatures(const std::vector<double>& values) {
   std::vector<VariedValue> result;
@@ -114,10 +122,8 @@ Quantity drive_before_drop_off() {
   return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
                   &Trajectory::drive_before_drop_off);
 }
-/// 37 is read off the runs themselves (docs/validation/microparticles.md), not off a paper.
-Quantity time_pulled_hard() {
-  return {"pulled_hard", "pulled with 37 k_BT/r_c or more for (tau)", 0,
-          [](const Records& records) { return Trajectory(records, 1).time_pulled_with(37); }};
+Quantity held_with() {
+  return quantity("held_with", "drive until it let go (k_BT/r_c)", 1, &Trajectory::held_with);
 }
 Quantity contact_fraction() {
   return quantity("contact_fraction", "in contact with the wall", 3, &Trajectory::contact_fraction);
@@ -220,7 +226,7 @@ const std::vector<TransportStudy>& transport_table() {
        {picked_up(), dropped_off_at(), dropped_off_x({"20"}),
         critical_velocity({"0.00420", "0.00429", "0.00438", "0.00433"}),
         velocity_before_drop_off({"0.00420", "0.00429", "0.00438", "0.00433"}), drive_before_drop_off(),
-        time_pulled_hard(),
+        held_with(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "never", "never"})}},
       {"dropoff_wetting",
        "strong friction: what attraction keeps the microparticle",
@@ -231,9 +237,17 @@ const std::vector<TransportStudy>& transport_table() {
        500,
        {picked_up(), dropped_off_at({"", "", "never", "never"}),
         dropped_off_x({"20", "20", "never", "never"}), critical_velocity({"0.00420"}),
-        velocity_before_drop_off({"0.00420"}), drive_before_drop_off(), time_pulled_hard(),
+        velocity_before_drop_off({"0.00420"}), drive_before_drop_off(), held_with(),
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "7 times that of -18"}),
         contact_fraction()}},
+      {"holding_force",
+       "a droplet drawn off a microparticle that stands: what it holds it with",
+       "theta",
+       rest_angles({60, 75, 90, 105, 120}),
+       3200,
+       never,
+       20,
+       {picked_up(), dropped_off_at(), held_with()}},
       {"passive_delivery",
        "the plate alone decides where it is dropped",
        "",
@@ -242,7 +256,7 @@ const std::vector<TransportStudy>& transport_table() {
        40,
        600,
        {picked_up(), dropped_off_at({"2520 to 3480"}), dropped_off_x({"-17.5 to -12.5"}), critical_velocity(),
-        velocity_before_drop_off(), drive_before_drop_off(), time_pulled_hard(),
+        velocity_before_drop_off(), drive_before_drop_off(), held_with(),
         quantity("final_x", "microparticle rests at x (r_c)", 2, &Trajectory::final_x, {"-17.5 to -12.5"}),
         quantity("final_droplet_x", "droplet at the end (r_c)", 2, &Trajectory::final_droplet_x)}},
       {"active_delivery",
