@@ -18,6 +18,7 @@ from study_figures import findings, microparticles, profiles
 FIGURES = {
     "equation_of_state": findings.plot_equation_of_state,
     "forces": microparticles.plot_forces,
+    "holding_force": microparticles.plot_holding_force,
     "inner_flow": microparticles.plot_inner_flow,
     "poiseuille": profiles.plot_poiseuille,
     "square_channel": profiles.plot_square_channel,

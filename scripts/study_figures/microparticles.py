@@ -9,7 +9,7 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 
-from study_figures.records import findings_of, runs_of, summary_of
+from study_figures.records import findings_of, runs_of, runs_with, summary_of
 
 # Study: how names of its values begin in file names, and what its second panel shows: heights over time, or a quantity of
 # NAME.csv against the value.
@@ -127,6 +127,35 @@ def plot_forces(folder):
     axes.flat[0].set_ylabel("force ($k_BT/r_c$)")
     velocity.set_ylabel(r"velocity ($r_c/\tau$), dashed")
     axes.flat[0].legend(loc="lower right")
+    return figure
+
+
+# Contact angle over x of the scenes in which droplets lose their microparticle: set_wettability of their schedules.
+PLATES = {"dropoff_size": ([-40, 40], [150, 40]), "passive_delivery": ([-40, -20, 25.1], [150, 102, 40])}
+
+
+def plot_holding_force(folder):
+    figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
+    held = {}
+    for run, force in runs_with(folder, "holding_force", "held_with"):
+        held.setdefault(float(re.search(r"theta=([\d.]+)", run["run"]).group(1)), []).append(force)
+    angles = sorted(held)
+    axis.errorbar(angles, [np.mean(held[angle]) for angle in angles],
+                  yerr=[np.std(held[angle], ddof=1) if len(held[angle]) > 1 else 0 for angle in angles],
+                  fmt="o", capsize=4, label="drawn off one that stands, R = 5 (holding_force)")
+    for (name, (places, plate)), style in zip(PLATES.items(), ("s", "^")):
+        lost = [(np.interp(float(run["dropped_off_x"]), places, plate), force)
+                for run, force in runs_with(folder, name, "held_with")]
+        if lost:
+            axis.plot(*zip(*lost), style, label="lost on its way (%s)" % name)
+    theta = np.radians(np.linspace(50, 130, 81))
+    thread = (theta - np.sin(theta) * np.cos(theta)) / (1 - np.cos(theta))
+    axis.plot(np.degrees(theta), 2 * 7.54 * 2 * thread, "k--", linewidth=0.8, label="a thread 2 $r_c$ high")
+    axis.set_xlabel("contact angle of the plate there (degrees)")
+    axis.set_ylabel("drive until it let go ($k_BT/r_c$)")
+    axis.set_ylim(bottom=0)
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=8)
     return figure
 
 

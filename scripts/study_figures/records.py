@@ -32,6 +32,16 @@ def runs_of(folder, name, prefix):
             for value in sorted(found, key=lambda value: (re.sub(r"[-\d.]+", "", value), numbers(value)))}
 
 
+def runs_with(folder, name, column):
+    """Lines of NAME_runs.csv in which that has happened: a list of ({column: text}, its number)."""
+    path = os.path.join(folder, name + "_runs.csv")
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="") as file:
+        rows = [(row, float(row[column])) for row in csv.DictReader(file)]
+    return [(row, value) for row, value in rows if math.isfinite(value)]
+
+
 def number(text):
     """Of a reference: NaN where it is none."""
     try:
