@@ -137,7 +137,7 @@ PLATES = {"dropoff_size": ([-40, 40], [150, 40]), "passive_delivery": ([-40, -20
 def plot_holding_force(folder):
     figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
     held = {}
-    for run, force in runs_with(folder, "holding_force", "held_with"):
+    for run, force in runs_with(folder, "holding_force", "largest_drive"):
         held.setdefault(float(re.search(r"theta=([\d.]+)", run["run"]).group(1)), []).append(force)
     angles = sorted(held)
     axis.errorbar(angles, [np.mean(held[angle]) for angle in angles],

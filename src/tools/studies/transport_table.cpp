@@ -122,6 +122,10 @@ Quantity drive_before_drop_off() {
   return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
                   &Trajectory::drive_before_drop_off);
 }
+Quantity largest_drive() {
+  return quantity("largest_drive", "largest drive, mean over 500 tau (k_BT/r_c)", 1,
+                  &Trajectory::largest_drive);
+}
 Quantity held_with() {
   return quantity("held_with", "drive until it let go (k_BT/r_c)", 1, &Trajectory::held_with);
 }
@@ -244,10 +248,10 @@ const std::vector<TransportStudy>& transport_table() {
        "a droplet drawn off a microparticle that stands: what it holds it with",
        "theta",
        rest_angles({60, 75, 90, 105, 120}),
-       3200,
+       3500,
        never,
        20,
-       {picked_up(), dropped_off_at(), held_with()}},
+       {picked_up(), dropped_off_at(), largest_drive()}},
       {"passive_delivery",
        "the plate alone decides where it is dropped",
        "",
