@@ -136,18 +136,18 @@ PLATES = {"dropoff_size": ([-40, 40], [150, 40]), "passive_delivery": ([-40, -20
 
 def plot_holding_force(folder):
     figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
-    held = {}
-    for run, force in runs_with(folder, "holding_force", "largest_drive"):
-        held.setdefault(float(re.search(r"theta=([\d.]+)", run["run"]).group(1)), []).append(force)
-    angles = sorted(held)
-    axis.errorbar(angles, [np.mean(held[angle]) for angle in angles],
-                  yerr=[np.std(held[angle], ddof=1) if len(held[angle]) > 1 else 0 for angle in angles],
-                  fmt="o", capsize=4, label="drawn off one that stands, R = 5 (holding_force)")
     for (name, (places, plate)), style in zip(PLATES.items(), ("s", "^")):
         lost = [(np.interp(float(run["dropped_off_x"]), places, plate), force)
                 for run, force in runs_with(folder, name, "held_with")]
         if lost:
             axis.plot(*zip(*lost), style, label="lost on its way (%s)" % name)
+    with open(os.path.join(folder, "holding_force_runs.csv"), newline="") as file:
+        for row in csv.DictReader(file):
+            angle = float(re.search(r"theta=([\d.]+)", row["run"]).group(1))
+            kept = math.isnan(float(row["dropped_off"]))
+            axis.plot(angle, 46, "o" if kept else "x", color="tab:blue", fillstyle="none", markersize=11 if kept else 8)
+    axis.plot([], [], "x", color="tab:blue", label="R = 5 pulled with 46 (holding_force): lost")
+    axis.plot([], [], "o", color="tab:blue", fillstyle="none", label="kept for 3,000 tau")
     theta = np.radians(np.linspace(50, 130, 81))
     thread = (theta - np.sin(theta) * np.cos(theta)) / (1 - np.cos(theta))
     axis.plot(np.degrees(theta), 2 * 7.54 * 2 * thread, "k--", linewidth=0.8, label="a thread 2 $r_c$ high")

@@ -102,25 +102,12 @@ double Trajectory::drive_before_drop_off() const {
   return way.empty() ? NAN : sum / static_cast<double>(way.size());
 }
 
-double Trajectory::mean_drive(double after, double until) const {
-  double sum = 0, count = 0;
-  for (const TransportRecord& record : records_)
-    if (record.time > after && record.time <= until) sum += record.drive_x, count += 1;
-  return sum / count;
-}
-
 double Trajectory::held_with() const {
   const double end = time_dropped_off() - letting_go, start = end - held_window;
-  return start >= time_picked_up() ? mean_drive(start, end) : NAN;
-}
-
-double Trajectory::largest_drive() const {
-  const double start = time_picked_up(), end = time_dropped_off();
-  double largest = NAN;
-  for (const TransportRecord& last : records_)
-    if (last.time - held_window >= start && last.time <= end)
-      largest = std::fmax(largest, mean_drive(last.time - held_window, last.time));
-  return largest;
+  double sum = 0, count = 0;
+  for (const TransportRecord& record : records_)
+    if (record.time > start && record.time <= end) sum += record.drive_x, count += 1;
+  return start >= time_picked_up() ? sum / count : NAN;
 }
 
 double Trajectory::time_fastest() const {

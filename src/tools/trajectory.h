@@ -30,9 +30,7 @@ class Trajectory {
   /// `letting_go` before the drop-off, for as long can the droplet draw out the thread that breaks.
   double held_with() const;
   static constexpr double held_window = 500.0, letting_go = 500.0;  ///< tau
-  /// The largest mean over `held_window` between the pickup and the drop-off, k_BT / r_c.
-  double largest_drive() const;
-  static constexpr double fitted_way = 8.0, spared_way = 0.5;  ///< r_c
+  static constexpr double fitted_way = 8.0, spared_way = 0.5;       ///< r_c
   /// When it is fastest: the largest slope of parabolas fitted over `fastest_window`. That is where the
   /// trajectory turns from concave to convex.
   double time_fastest() const;
@@ -54,7 +52,6 @@ class Trajectory {
  private:
   std::optional<std::size_t> drop_off() const;
   std::vector<TransportRecord> way_before_drop_off() const;  ///< empty: not dropped off
-  double mean_drive(double after, double until) const;       ///< NaN without records between them
   double first_pass(double x, double TransportRecord::*place) const;
   double mean(double from_time, double TransportRecord::*value) const;
   double last_before(double time, double TransportRecord::*value) const;

@@ -74,16 +74,6 @@ TEST(Trajectory, HeldWithTheMeanForceBeforeTheDropletLetsGo) {
   EXPECT_TRUE(std::isnan(Trajectory(records, 1).held_with())) << "it has not been held for so long";
 }
 
-TEST(Trajectory, LargestDriveIsAMeanBetweenPickupAndDropOff) {
-  auto records = lost_on_its_way();
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    const double time = records[k].time;
-    const bool carried = time > 100 && time <= 4100, hard = time > 2000 && time <= 2250;
-    records[k].drive_x = (!carried ? 1000 : hard ? 60 : 20) + (k % 2 ? 90 : -90);
-  }
-  EXPECT_NEAR(Trajectory(records, 1).largest_drive(), 40, 1);  // half of a window is hard
-}
-
 TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   auto records = lost_on_its_way();
   records.back().carrier = 1;  // its satellite has merged into the droplet
@@ -93,7 +83,6 @@ TEST(Trajectory, TakenUpAgainIsNotDroppedOff) {
   EXPECT_TRUE(std::isnan(way.velocity_before_drop_off()));
   EXPECT_TRUE(std::isnan(way.drive_before_drop_off()));
   EXPECT_TRUE(std::isnan(way.held_with()));
-  EXPECT_TRUE(std::isnan(way.largest_drive()));
   EXPECT_TRUE(way.carried_at_end());
 }
 

@@ -122,10 +122,6 @@ Quantity drive_before_drop_off() {
   return quantity("drive_before", "mean drive before the drop-off (k_BT/r_c)", 1,
                   &Trajectory::drive_before_drop_off);
 }
-Quantity largest_drive() {
-  return quantity("largest_drive", "largest drive, mean over 500 tau (k_BT/r_c)", 1,
-                  &Trajectory::largest_drive);
-}
 Quantity held_with() {
   return quantity("held_with", "drive until it let go (k_BT/r_c)", 1, &Trajectory::held_with);
 }
@@ -245,13 +241,13 @@ const std::vector<TransportStudy>& transport_table() {
         passes("passes_40", "passes x = 40 at (tau)", 40, {"never", "never", "7 times that of -18"}),
         contact_fraction()}},
       {"holding_force",
-       "a droplet drawn off a microparticle that stands: what it holds it with",
+       "the same force on droplets that hold a microparticle, over the plate's angle",
        "theta",
-       rest_angles({60, 75, 90, 105, 120}),
-       3500,
+       rest_angles({60, 70, 80, 90, 100}),
+       3000,
        never,
        20,
-       {picked_up(), dropped_off_at(), largest_drive()}},
+       {picked_up(), dropped_off_at(), held_with()}},
       {"passive_delivery",
        "the plate alone decides where it is dropped",
        "",
