@@ -247,7 +247,7 @@ const std::vector<TransportStudy>& transport_table() {
        3000,
        never,
        20,
-       {picked_up(), dropped_off_at(), held_with()}},
+       {picked_up(), dropped_off_at()}},
       {"passive_delivery",
        "the plate alone decides where it is dropped",
        "",
