@@ -126,7 +126,7 @@ TEST(ResultTable, ReadsFilesWithoutTimesAndCutLines) {
 
 TEST(Study, EveryTransportStudyHasAScene) {
   const std::vector<Study> studies = transport_studies();
-  EXPECT_EQ(studies.size(), 10u);
+  EXPECT_EQ(studies.size(), 11u);
   for (const Study& study : studies) {
     chip::Scene scene = scene_for({}, study.name);
     ASSERT_FALSE(scene.microparticles.empty()) << study.name;
