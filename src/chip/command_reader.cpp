@@ -14,8 +14,6 @@ using engine::YamlReader;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::vector<std::uint32_t> read_channels(const YamlReader& reader) {
   std::vector<std::uint32_t> channels;
   for (const std::uint64_t channel :
@@ -213,8 +211,8 @@ Eigen::Vector3d read_vector(const YamlReader& reader, const std::string& key, Di
   return {components[0], components[1], components[2]};
 }
 
-double sphere_volume(double radius) { return 4 * kPi / 3 * radius * radius * radius; }
+double sphere_volume(double radius) { return 4 * M_PI / 3 * radius * radius * radius; }
 
-double sphere_radius(double volume) { return std::cbrt(volume / (4 * kPi / 3)); }
+double sphere_radius(double volume) { return std::cbrt(volume / (4 * M_PI / 3)); }
 
 }  // namespace dmf::chip

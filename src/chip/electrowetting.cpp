@@ -9,7 +9,7 @@ namespace dmf::chip {
 
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = M_PI / 180;
 
 double cosine(double degrees) { return std::cos(degrees * kDegree); }
 

@@ -9,7 +9,7 @@ namespace dmf::chip {
 
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = M_PI / 180;
 constexpr double kLongestPiece = 0.25;  // r_c, of a contact line
 constexpr double kPiecesInAGap = 8;
 constexpr double kThermalWork = 10;    // k_BT, that thermal motion undoes

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 /// Real files are nested 8 deep.
 constexpr int kMaxDepth = 32;
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = M_PI / 180;
 
 std::string shown(const Json& value) {
   if (value.is_object()) return "an object";

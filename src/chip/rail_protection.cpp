@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace dmf::chip {
 
 double pad_current(const Board& board, const std::vector<double>& capacitances) {
-  constexpr double kTwoPi = 2 * 3.14159265358979323846;
+  constexpr double kTwoPi = 2 * M_PI;
   double charge = 0;
   for (std::size_t index = 0; index < capacitances.size(); ++index)
     charge += capacitances[index] * board.voltage(index);

@@ -19,8 +19,7 @@ namespace {
 using Eigen::Affine2d;
 using Eigen::Vector2d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
+constexpr double kDegree = M_PI / 180;
 
 /// How far a chord may stray from its curve, as a fraction of the curve's size.
 constexpr double kFlatness = 1e-3;
@@ -137,8 +136,8 @@ class Outline {
     const Vector2d start = unit - centre_unit, end = -unit - centre_unit;
     const double first = std::atan2(start.y(), start.x());
     double angle = std::atan2(end.y(), end.x()) - first;
-    if (sweep && angle < 0) angle += 2 * kPi;
-    if (!sweep && angle > 0) angle -= 2 * kPi;
+    if (sweep && angle < 0) angle += 2 * M_PI;
+    if (!sweep && angle > 0) angle -= 2 * M_PI;
     if (!std::isfinite(angle)) return line(to);  // the radii are beyond all measure
     const int chords = static_cast<int>(std::ceil(std::abs(angle) / (2 * std::acos(1 - kFlatness))));
     for (int i = 1; i < chords; ++i) {

@@ -78,9 +78,8 @@ inline MdpdLaw<double> liquid_law(const LiquidParameters& liquid, double time_st
 /// Turns a sum of density_weight into a density: 15 / (2 pi r_d^3) in space (Lan 2.38), 6 / (pi r_d^2) in a
 /// plane.
 inline double density_normalization(double repulsion_radius, int dimensions = 3) {
-  constexpr double pi = 3.14159265358979323846;
-  if (dimensions == 2) return 6.0 / (pi * repulsion_radius * repulsion_radius);
-  return 15.0 / (2.0 * pi * repulsion_radius * repulsion_radius * repulsion_radius);
+  if (dimensions == 2) return 6.0 / (M_PI * repulsion_radius * repulsion_radius);
+  return 15.0 / (2.0 * M_PI * repulsion_radius * repulsion_radius * repulsion_radius);
 }
 
 }  // namespace dmf::engine

@@ -72,8 +72,8 @@ std::vector<std::uint32_t> take_ids(const Beads& beads, std::size_t count, std::
 /// Beads of the initial density in a sphere, or in a plane in a disc.
 double sphere_beads(const DropletPlacement& placement, const Parameters& parameters) {
   const double radius = placement.radius, density = initial_density(parameters, placement.species);
-  if (parameters.dimensions == 2) return 3.14159265 * radius * radius * density;
-  return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3) * density;
+  if (parameters.dimensions == 2) return M_PI * radius * radius * density;
+  return 4.0 / 3.0 * M_PI * std::pow(radius, 3) * density;
 }
 
 void require_within(const Domain& domain, int axis, double low, double high, double cutoff_radius) {
@@ -127,7 +127,7 @@ std::vector<Vector3d> pancake_sites(const DropletPlacement& placement, const Par
   const auto count = static_cast<std::size_t>(std::lround(sphere_beads(placement, parameters)));
   const double between = domain.size().z() - a;  // of the lowest and the highest layer
   const double layers = std::floor(between / (0.5 * a)) + 1;
-  const double wide = std::sqrt(static_cast<double>(count) * a * a / (2.0 * 3.14159265 * layers)) + 2.0 * a;
+  const double wide = std::sqrt(static_cast<double>(count) * a * a / (2.0 * M_PI * layers)) + 2.0 * a;
   const double from = domain.lower.z() + 0.5 * (domain.size().z() - 0.5 * a * layers);
   const Vector3d lower(placement.center.x() - wide, placement.center.y() - wide, from);
   const Vector3d upper(placement.center.x() + wide, placement.center.y() + wide, from + 0.5 * a * layers);

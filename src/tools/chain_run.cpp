@@ -12,8 +12,6 @@ namespace {
 using engine::Side;
 using engine::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
-
 engine::Parameters parameters_of(const ChainRun& how) {
   engine::Parameters parameters;
   engine::Domain& domain = parameters.domain;
@@ -84,8 +82,8 @@ double thermal_square(const engine::SpringLaw& law, double temperature) {
 }
 
 double rouse_time(std::uint32_t beads, double bond_square, double gamma, double density, double temperature) {
-  const double friction = 4 * pi * gamma * density / 90;
-  return friction * beads * beads * bond_square / (3 * pi * pi * temperature);
+  const double friction = 4 * M_PI * gamma * density / 90;
+  return friction * beads * beads * bond_square / (3 * M_PI * M_PI * temperature);
 }
 
 ChainResult run_chains(const ChainRun& how) {

@@ -9,7 +9,6 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int terms = 200;       ///< of the series: the n-th counts 1 / n^3
 constexpr double voxel = 0.5;    ///< r_c: half the lattice constant of walls of four beads per r_c^3
 constexpr double thickness = 1;  ///< of the walls, r_c
@@ -59,13 +58,13 @@ double duct_velocity(double y, double z, double half_y, double half_z) {
   if (std::abs(y) >= half_y || std::abs(z) >= half_z) return 0;
   double sum = 0;
   for (int n = 1; n < 2 * terms; n += 2) {
-    const double k = n * pi / (2 * half_y);
+    const double k = n * M_PI / (2 * half_y);
     // cosh(k z) / cosh(k half_z) without overflow.
     const double ratio = (std::exp(k * (std::abs(z) - half_z)) + std::exp(-k * (std::abs(z) + half_z))) /
                          (1 + std::exp(-2 * k * half_z));
     sum += (n % 4 == 1 ? 1 : -1) * (1 - ratio) * std::cos(k * y) / (1.0 * n * n * n);
   }
-  return 16 * half_y * half_y / (pi * pi * pi) * sum;
+  return 16 * half_y * half_y / (M_PI * M_PI * M_PI) * sum;
 }
 
 void lay_duct(double length, double half_width, engine::Parameters& parameters) {
@@ -103,8 +102,8 @@ double DuctRun::half_width() const {
 
 double mean_duct_velocity(double half_y, double half_z) {
   double sum = 0;
-  for (int n = 1; n < 2 * terms; n += 2) sum += std::tanh(n * pi * half_z / (2 * half_y)) / std::pow(n, 5);
-  return half_y * half_y / 3 * (1 - 192 * half_y / (std::pow(pi, 5) * half_z) * sum);
+  for (int n = 1; n < 2 * terms; n += 2) sum += std::tanh(n * M_PI * half_z / (2 * half_y)) / std::pow(n, 5);
+  return half_y * half_y / 3 * (1 - 192 * half_y / (std::pow(M_PI, 5) * half_z) * sum);
 }
 
 DuctResult run_duct(const DuctRun& run) {

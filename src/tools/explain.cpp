@@ -25,7 +25,6 @@ constexpr double typical_speed = 0.05;
 constexpr double alike_within = 3;
 /// Below this a Bond number does not matter: gravity lowers a droplet by a twentieth of its height at most.
 constexpr double small_bond = 0.1;
-constexpr double pi = 3.14159265358979323846;
 
 bool alike(double a, double b) { return a < alike_within * b && b < alike_within * a; }
 
@@ -39,7 +38,7 @@ std::string too(double ours, double waters, const char* more, const char* less) 
 double beads_on_one_electrode(const chip::Scene& scene, double pitch) {
   const double volume = scene.parameters.domain.has_top_plate()
                             ? pitch * pitch * engine::liquid_height(scene.parameters)
-                            : pi / 6 * pitch * pitch * pitch;
+                            : M_PI / 6 * pitch * pitch * pitch;
   return volume * scene.parameters.liquid.bulk_density;
 }
 
@@ -175,7 +174,7 @@ std::string explain(const chip::Scene& scene) {
 
   double moving = 0, largest = 0;
   for (const auto& droplet : scene.droplets) {
-    moving += 4.0 / 3 * pi * std::pow(droplet.radius, 3) * initial_density(parameters, droplet.species);
+    moving += 4.0 / 3 * M_PI * std::pow(droplet.radius, 3) * initial_density(parameters, droplet.species);
     largest = std::max(largest, droplet.radius);
   }
   // Less where droplets and microparticles are in the way.

@@ -6,8 +6,7 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double degree = pi / 180;
+constexpr double degree = M_PI / 180;
 constexpr double ring_width = 0.5;  ///< r_c
 constexpr double middle = 2;        ///< r_c
 
@@ -29,13 +28,13 @@ double root(double lower, double upper, Function function) {
 }  // namespace
 
 double cap_sphere_radius(double volume, double angle) {
-  return std::cbrt(3 * volume / (pi * (2 + cosine(angle)) * std::pow(versine(angle), 2)));
+  return std::cbrt(3 * volume / (M_PI * (2 + cosine(angle)) * std::pow(versine(angle), 2)));
 }
 
 std::optional<double> cap_angle_of_edge(double volume, double radius, double thickness) {
   if (thickness <= 0) {
     // t^3 + 3 t = 6 V / (pi r^3).
-    const double t = 2 * std::sinh(std::asinh(3 * volume / (pi * std::pow(radius, 3))) / 3);
+    const double t = 2 * std::sinh(std::asinh(3 * volume / (M_PI * std::pow(radius, 3))) / 3);
     return 2 * std::atan(t) / degree;
   }
   const auto height = [&](double angle) { return cap_sphere_radius(volume, angle) * versine(angle); };
@@ -68,7 +67,7 @@ void CapMeter::add(const Eigen::Vector3f& from_axis_and_wall) {
 }
 
 double CapMeter::thickness(std::size_t ring) const {
-  const double area = pi * ring_width * ring_width * (2 * static_cast<double>(ring) + 1);
+  const double area = M_PI * ring_width * ring_width * (2 * static_cast<double>(ring) + 1);
   return rings_[ring] / (samples_ * density_ * area);
 }
 
@@ -79,7 +78,7 @@ double CapMeter::middle_thickness() const {
   double beads = 0;
   for (std::size_t ring = 0; ring * ring_width < middle && ring < rings_.size(); ++ring)
     beads += rings_[ring];
-  return beads / (samples_ * density_ * pi * middle * middle);
+  return beads / (samples_ * density_ * M_PI * middle * middle);
 }
 
 double CapMeter::edge_radius() const {

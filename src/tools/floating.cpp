@@ -11,7 +11,6 @@ namespace {
 
 constexpr double thickness = 6.0;  // of the film, r_c
 constexpr double bin = 0.1;        // of the density profiles, r_c
-constexpr double pi = 3.14159265358979323846;
 
 /// Bead counts over a distance, each bin with its own volume.
 class Profile {
@@ -97,12 +96,12 @@ FloatingResult run_floating(const FloatingRun& run) {
     }
   }
   const double half = 0.5 * parameters.liquid.bulk_density;
-  const double flat_area = 4 * half_width * half_width - pi * far * far;
+  const double flat_area = 4 * half_width * half_width - M_PI * far * far;
   const double surface = over_height.crossing(
       half, true, [&](std::size_t) { return bin * flat_area * static_cast<double>(looks); });
   result.effective_radius = over_distance.crossing(half, false, [&](std::size_t k) {
     const double inner = bin * static_cast<double>(k), outer = inner + bin;
-    return 2 * pi / 3 * (1 - cone) * (outer * outer * outer - inner * inner * inner) *
+    return 2 * M_PI / 3 * (1 - cone) * (outer * outer * outer - inner * inner * inner) *
            static_cast<double>(looks);
   });
   result.height_deviation = std::sqrt(std::max(0.0, square - result.height * result.height));
@@ -110,7 +109,7 @@ FloatingResult run_floating(const FloatingRun& run) {
   const double cosine = -result.height / result.effective_radius;
   result.angle = result.immersion < 0.02 || result.effective_radius < 0
                      ? 180.0
-                     : std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / pi;
+                     : std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI;
   return result;
 }
 

@@ -15,8 +15,6 @@ using engine::Side;
 using engine::Simulation;
 using engine::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
-
 Parameters periodic_box(const LiquidRun& how, const Vector3d& size) {
   Parameters parameters;
   parameters.domain.lower = Vector3d::Zero();
@@ -110,7 +108,7 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
   Simulation simulation(periodic_box(how, Vector3d::Constant(size)), no_wall(), {1, "auto"});
   simulation.add_droplet({Vector3d::Constant(size / 2), radius});
   double pressure = 0, density = 0, looks = 0, beads = 0, temperature = 0;
-  const double inner = radius - 2.5, volume = 4.0 / 3 * pi * inner * inner * inner;
+  const double inner = radius - 2.5, volume = 4.0 / 3 * M_PI * inner * inner * inner;
   Vector3d momentum = Vector3d::Zero();
   run(simulation, how.quick ? 10 : 50, measuring_time(how, 300, 20), 0.2, [&] {
     const auto snapshot = simulation.observe({true, false, true});
@@ -129,7 +127,7 @@ FreeDropletResult run_free_droplet(const LiquidRun& how, double radius) {
     momentum = snapshot->momentum;
     looks += 1;
   });
-  const double equimolar_radius = std::cbrt(3 * beads / looks / (4 * pi * density / looks));
+  const double equimolar_radius = std::cbrt(3 * beads / looks / (4 * M_PI * density / looks));
   return {density / looks, pressure / looks, equimolar_radius, temperature / looks, momentum.norm()};
 }
 
@@ -158,7 +156,7 @@ BulkResult run_bulk(const LiquidRun& how) {
     std::array<double, modes> wave{};
     for (std::size_t k = 0; k < snapshot->positions.size(); ++k)
       for (int axis = 0; axis < 3; ++axis) {
-        const double phase = 2 * pi / size * snapshot->positions[k][axis];
+        const double phase = 2 * M_PI / size * snapshot->positions[k][axis];
         for (int t = 1; t < 3; ++t) {
           const double v = snapshot->velocities[k][(axis + t) % 3];
           wave[4 * axis + 2 * (t - 1)] += v * std::cos(phase);
@@ -186,7 +184,7 @@ BulkResult run_bulk(const LiquidRun& how) {
     n += 1, sum_t += t, sum_l += l, sum_tt += t * t, sum_tl += t * l;
   }
   const double slope = (n * sum_tl - sum_t * sum_l) / (n * sum_tt - sum_t * sum_t);
-  const double wave_number = 2 * pi / size, looks = static_cast<double>(history.size());
+  const double wave_number = 2 * M_PI / size, looks = static_cast<double>(history.size());
   const double diffusivity =
       (displacements.mean_square() - early) / (6 * ((looks - 1) * interval - early_time));
   return {density, temperature / looks, pressure / looks, -slope * density / (wave_number * wave_number),

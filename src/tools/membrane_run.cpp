@@ -16,8 +16,6 @@ using engine::MembraneObservation;
 using engine::Side;
 using engine::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
-
 engine::Parameters parameters_of(const MembraneRun& how) {
   engine::Parameters parameters;
   engine::Domain& domain = parameters.domain;
@@ -49,7 +47,7 @@ bool encloses(const MembraneObservation& membrane, const Vector3d& point) {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return std::abs(sum) > 2 * pi;
+  return std::abs(sum) > 2 * M_PI;
 }
 
 /// Along the shortest axis: thickness near the axis over the largest one of rings around it. NaN when no bead

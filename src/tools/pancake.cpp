@@ -12,8 +12,6 @@ namespace {
 
 using engine::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
-
 }  // namespace
 
 PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve& curve) {
@@ -27,8 +25,8 @@ PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve
   parameters.seed = run.seed;
   engine::Simulation simulation(parameters, curve, {1, "auto"});
   simulation.set_wettability([&run](double, double) { return run.contact_angle; });
-  const double volume = pi * run.radius * run.radius * engine::liquid_height(parameters);
-  simulation.add_droplet({Vector3d(0, 0, 0.5 * run.gap), std::cbrt(volume * 0.75 / pi)});
+  const double volume = M_PI * run.radius * run.radius * engine::liquid_height(parameters);
+  simulation.add_droplet({Vector3d(0, 0, 0.5 * run.gap), std::cbrt(volume * 0.75 / M_PI)});
 
   const auto steps_of = [&run](double time) {
     return static_cast<std::uint64_t>(std::llround(time / run.time_step));
@@ -60,7 +58,7 @@ PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve
     }
     looks += 1;
   }
-  const double area = pi * column * column, volume_of_middle = area * 2 * slice;
+  const double area = M_PI * column * column, volume_of_middle = area * 2 * slice;
   PancakeResult result{};
   result.density = in_middle / looks / volume_of_middle;
   result.pressure = pressure / looks / volume_of_middle;
@@ -69,7 +67,7 @@ PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const double inner = static_cast<double>(k) * ring;
     const double density =
-        profile[k] / looks / (pi * ((inner + ring) * (inner + ring) - inner * inner) * 2 * slice);
+        profile[k] / looks / (M_PI * ((inner + ring) * (inner + ring) - inner * inner) * 2 * slice);
     const double at = inner + 0.5 * ring;
     const double before = outside;
     outside = density;
@@ -82,7 +80,7 @@ PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve
 }
 
 double bridge_pressure(double height, double angle, double equator) {
-  const double sine = std::sin(angle * pi / 180), cosine = std::cos(angle * pi / 180);
+  const double sine = std::sin(angle * M_PI / 180), cosine = std::cos(angle * M_PI / 180);
   if (cosine == 0 || std::abs(angle - 90) < 1e-9) return 1 / equator;
   // Half of the height that a surface of pressure p has, from the equator to the plate. Differences of nearly
   // equal numbers are multiplied out: close to 90 degrees all radii are nearly the equator's.

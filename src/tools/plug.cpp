@@ -11,7 +11,6 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double slice = 1;   ///< half the thickness of the slice of a square channel that is looked at, r_c
 constexpr double corner = 2;  ///< r_c
 constexpr double look_every = 0.2;  ///< tau
@@ -43,8 +42,8 @@ engine::Parameters parameters_of(const PlugRun& run) {
 class MeanPlace {
  public:
   explicit MeanPlace(double period) : period_(period) {}
-  void add(double x) { sum_ += std::polar(1.0, 2 * pi * x / period_); }
-  double place() const { return std::arg(sum_) * period_ / (2 * pi); }
+  void add(double x) { sum_ += std::polar(1.0, 2 * M_PI * x / period_); }
+  double place() const { return std::arg(sum_) * period_ / (2 * M_PI); }
 
  private:
   double period_;

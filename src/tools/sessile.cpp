@@ -11,7 +11,7 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
+constexpr double degree = M_PI / 180.0;
 
 /// What looks at a droplet, over the whole measurement or half of it.
 struct Meters {

@@ -15,7 +15,6 @@ namespace {
 using engine::LabelGrid;
 using engine::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double looks_apart = 0.5;  // tau
 
 /// What lies outside of the channel above (side 1) or below (-1) z = 0.
@@ -66,7 +65,7 @@ std::vector<ChannelSection> sections_of(const LabelGrid& grid) {
 
 }  // namespace
 
-double Slopes::angle() const { return std::atan2(wide - narrow, run) * 180 / pi; }
+double Slopes::angle() const { return std::atan2(wide - narrow, run) * 180 / M_PI; }
 
 void lay_slopes(const Slopes& slopes, chip::Scene& scene) {
   const engine::Domain& domain = scene.parameters.domain;

@@ -10,8 +10,6 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Three electrodes in a row, with a pitch of bare plate around them.
 chip::Scene scene_of(const SplittingRun& run) {
   const double half_x = 2.5 * run.pitch, half_y = 1.5 * run.pitch;
@@ -62,8 +60,8 @@ SplittingResult run_splitting(const SplittingRun& run) {
 }
 
 double largest_splitting_height(double rest_angle, double on_angle) {
-  const double end = 1 / std::sqrt(pi), neck = (1 - end * end) / (2 * end);
-  const double contrast = std::cos(on_angle * pi / 180) - std::cos(rest_angle * pi / 180);
+  const double end = 1 / std::sqrt(M_PI), neck = (1 - end * end) / (2 * end);
+  const double contrast = std::cos(on_angle * M_PI / 180) - std::cos(rest_angle * M_PI / 180);
   return contrast / (1 / neck + 1 / end);
 }
 

@@ -14,7 +14,7 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846, degree = pi / 180;
+constexpr double degree = M_PI / 180;
 constexpr double slab = 3.5;            ///< r_c; Yao's is 3, the least that a periodic side may be is 3.15
 constexpr double ceiling = 50;          ///< above the ridges, r_c
 constexpr double voxel = 0.5;           ///< r_c
@@ -58,10 +58,10 @@ class Place {
   void follow(const engine::Snapshot& snapshot) {
     double sine = 0, cosine = 0;
     for (const Eigen::Vector3f& at : snapshot.positions) {
-      sine += std::sin(2 * pi * at.x() / period_);
-      cosine += std::cos(2 * pi * at.x() / period_);
+      sine += std::sin(2 * M_PI * at.x() / period_);
+      cosine += std::cos(2 * M_PI * at.x() / period_);
     }
-    const double folded = std::atan2(sine, cosine) * period_ / (2 * pi);
+    const double folded = std::atan2(sine, cosine) * period_ / (2 * M_PI);
     centre_ += nearest(folded - centre_);
   }
   /// Never folded.
@@ -108,7 +108,7 @@ void place_droplet(const StructuredWallRun& run, double middle, engine::Simulati
     simulation.fill_slab({middle - 0.5 * side, 0, lowest}, {middle + 0.5 * side, slab, lowest + side});
     return;
   }
-  const double radius = std::sqrt(run.area / pi);
+  const double radius = std::sqrt(run.area / M_PI);
   const double layer = std::cbrt(4 / run.parameters.liquid.initial_density);
   const int layers = static_cast<int>(std::lround(2 * radius / layer));
   for (int k = 0; k < layers; ++k) {

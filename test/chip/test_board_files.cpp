@@ -15,7 +15,6 @@
 namespace dmf::chip {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const std::string kBoards = DMF_SOURCE_DIR "/config/boards/";
 
 std::string text_of(const std::string& file) {
@@ -122,7 +121,7 @@ TEST(MicrodropBoard, ScaleIsOfAreaSoLengthsFollowItsRoot) {
   EXPECT_EQ(board.electrodes.size(), 9u);
   for (const std::uint32_t channel : {0, 1, 2, 3, 4, 10, 11})
     EXPECT_NEAR(area_mm2(board, channel), 4, 1e-9) << channel << ": 20 x 20 units, however it is written";
-  EXPECT_NEAR(area_mm2(board, 12), 4 + 0.5 * kPi, 0.01 * 0.5 * kPi) << "and half a circle of 1 mm";
+  EXPECT_NEAR(area_mm2(board, 12), 4 + 0.5 * M_PI, 0.01 * 0.5 * M_PI) << "and half a circle of 1 mm";
   // The end of the reservoir, y = 30 t (1 - t) over dx = 120 t (1 - t) dt, has 3600 B(3, 3) = 120 square
   // units.
   EXPECT_NEAR(area_mm2(board, 20), 8 + 1.2, 0.01 * 1.2);

@@ -40,7 +40,7 @@ TEST(BoardScene, BetweenPlatesADropletMayFillAnElectrodeOfTheBoard) {
   const engine::DropletPlacement& droplet = scene.droplets.at(0);
   EXPECT_TRUE(droplet.center.head<2>().isApprox(Vector2d(-23, 13), 1e-9)) << "(-5.75, 3.25) mm of 0.25 mm";
   // A disc as large as a cell of 10 x 10 r_c: within 5 %, as the pad is drawn in by 0.9 of the gap.
-  EXPECT_NEAR(std::pow(engine::pancake_radius(droplet, scene.parameters), 2) * 3.14159265, 100, 5);
+  EXPECT_NEAR(std::pow(engine::pancake_radius(droplet, scene.parameters), 2) * M_PI, 100, 5);
 }
 
 TEST(BoardScene, TheUnitsAreWatersAtTheLengthThatFollows) {

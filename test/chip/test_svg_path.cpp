@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -10,8 +11,6 @@ namespace dmf::chip {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kPi = 3.14159265358979323846;
 
 double area_of(const std::string& path_data) { return area(closed_path(path_data)); }
 
@@ -28,11 +27,12 @@ TEST(SvgPath, EveryCommandDrawsWhatTheStandardSays) {
       << "t goes on mirrored: a hump and a hollow";
   EXPECT_NEAR(area_of("M0 0C0 10 20 10 20 0z"), 120, inside(40, 28));
   EXPECT_NEAR(area_of("M0 0c0 10 20 10 20 0s20-10 20 0V-50H0z"), 2000, inside(40, 1)) << "s goes on mirrored";
-  EXPECT_NEAR(area_of("M0 0A5 5 0 0 1 10 0z"), 12.5 * kPi, inside(5, 5 * kPi));
-  EXPECT_NEAR(area_of("M0 0A1 1 0 0 1 10 0z"), 12.5 * kPi, inside(5, 5 * kPi)) << "radii too small are grown";
-  EXPECT_NEAR(area_of("M5 0a5 5 0 1 1 0-.001z"), 25 * kPi, inside(5, 10 * kPi) + 0.001 * 5)
+  EXPECT_NEAR(area_of("M0 0A5 5 0 0 1 10 0z"), 12.5 * M_PI, inside(5, 5 * M_PI));
+  EXPECT_NEAR(area_of("M0 0A1 1 0 0 1 10 0z"), 12.5 * M_PI, inside(5, 5 * M_PI))
+      << "radii too small are grown";
+  EXPECT_NEAR(area_of("M5 0a5 5 0 1 1 0-.001z"), 25 * M_PI, inside(5, 10 * M_PI) + 0.001 * 5)
       << "the large arc is nearly the circle";
-  EXPECT_NEAR(area_of("M0 0a10 5 90 0110 0 10 5 90 0 1-10 0z"), 50 * kPi, inside(10, 49))
+  EXPECT_NEAR(area_of("M0 0a10 5 90 0110 0 10 5 90 0 1-10 0z"), 50 * M_PI, inside(10, 49))
       << "an upright ellipse; flags need nothing between";
 }
 

@@ -35,7 +35,7 @@ TEST(ClosedChip, ADropletFillsAsManyElectrodesAsItWasAskedFor) {
   const Scene closed = scene("droplets: [{center: [0, 0], fills: 1.5}]\n");
   EXPECT_TRUE(closed.parameters.domain.has_top_plate());
   EXPECT_EQ(closed.parameters.wall.top_contact_angle, 115);
-  const double footprint = 3.14159265 * std::pow(pancake_radius(closed.droplets.at(0), closed.parameters), 2);
+  const double footprint = M_PI * std::pow(pancake_radius(closed.droplets.at(0), closed.parameters), 2);
   EXPECT_NEAR(footprint, 1.5 * 7 * 7, 1e-6);
   // The same by command; its volume is what the droplet reports.
   Experiment chip(scene(), {1, "auto"});

@@ -16,8 +16,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 TriangleMesh sphere(int subdivisions, double radius, const Vector3d& centre = Vector3d::Zero()) {
   TriangleMesh mesh = icosphere(subdivisions);
   for (Vector3d& v : mesh.vertices) v = centre + radius * v;
@@ -54,8 +52,8 @@ TEST(Meshes, SpheresComeNearToSpheres) {
     EXPECT_TRUE(violations(mesh).empty()) << violations(mesh).front();
   }
   // Of a polyhedron in the sphere: off by the square of the edge.
-  EXPECT_NEAR(volume(icosphere(4)), 4 * pi / 3, 0.01 * 4 * pi / 3);
-  EXPECT_NEAR(area(icosphere(4)), 4 * pi, 0.01 * 4 * pi);
+  EXPECT_NEAR(volume(icosphere(4)), 4 * M_PI / 3, 0.01 * 4 * M_PI / 3);
+  EXPECT_NEAR(area(icosphere(4)), 4 * M_PI, 0.01 * 4 * M_PI);
   EXPECT_NEAR(reduced_volume(area(icosphere(4)), volume(icosphere(4))), 1, 0.005);
 }
 
@@ -214,7 +212,7 @@ TEST(Membranes, BendAsSeungAndNelsonSay) {
   for (const double radius : {2.0, 5.0}) {
     const TriangleMesh mesh = sphere(4, radius);
     const double energy = MembraneNetwork(mesh, stiffness).energy(mesh.vertices).bending;
-    EXPECT_NEAR(energy, 8 * pi / 3 * 20, 0.05 * energy);
+    EXPECT_NEAR(energy, 8 * M_PI / 3 * 20, 0.05 * energy);
     // That the icosphere's triangles are not equilateral, however fine it is, makes the rest: the angle at an
     // edge is the distance between the circumcentres of its triangles over the radius, half the edge times
     // the cotangents of the angles across it.

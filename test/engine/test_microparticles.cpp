@@ -156,7 +156,7 @@ TEST(Contact, SinksToWhereHertzBalancesTheAdhesionOfTheWall) {
   simulation.add_microparticle(sphere_at({8, 8}));
   run(simulation, 20000);
   const MicroparticleTotals totals = only_one(simulation).totals;
-  const double load = wall_adhesion(-1, 1, 612 / (4 * 3.14159265), WallParameters{});
+  const double load = wall_adhesion(-1, 1, 612 / (4 * M_PI), WallParameters{});
   const double indentation = std::pow(load / (4.0 / 3.0 * 1e6), 2.0 / 3.0);
   // Without liquid nothing damps it: it swings around that place, and the mean force is the load. The load is
   // an integral; the sum over beads above this place of the lattice is 3 % less.

@@ -243,7 +243,7 @@ TEST(Fill, HasTheDensityOfItsLiquidAndLeavesOutWhereSomethingIs) {
   const auto droplet = static_cast<double>(simulation.add_droplet({{6, 6, 6}, 4}));
   const auto oil = static_cast<double>(simulation.fill({{0, 0, 0}, {12, 12, 12}, 1}));
   // The sphere grown by what two lattices keep from each other: at least nothing, at most their distance.
-  const auto sphere = [](double radius) { return 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3); };
+  const auto sphere = [](double radius) { return 4.0 / 3.0 * M_PI * std::pow(radius, 3); };
   EXPECT_LT(oil, 5 * (1728 - sphere(3.8)));
   EXPECT_GT(oil, 5 * (1728 - sphere(4.5)));
   const auto snapshot = simulation.observe({true});

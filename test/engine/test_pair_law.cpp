@@ -15,12 +15,12 @@ using HWY_NAMESPACE::density_weight;
 using HWY_NAMESPACE::mdpd_force;
 
 TEST(DensityWeight, IntegratesToOneOverSpace) {
-  const double r_d = 0.75, pi = 3.14159265358979323846;
+  const double r_d = 0.75;
   double integral = 0;
   const int n = 100000;
   for (int k = 0; k < n; ++k) {
     const double r = (k + 0.5) * r_d / n;
-    integral += 4 * pi * r * r * density_normalization(r_d) * density_weight(r, 1 / r_d) * r_d / n;
+    integral += 4 * M_PI * r * r * density_normalization(r_d) * density_weight(r, 1 / r_d) * r_d / n;
   }
   EXPECT_NEAR(integral, 1.0, 1e-8);
 }

@@ -19,7 +19,7 @@ TEST(Pancake, HoldsItsSpheresVolumeAndReachesBothPlates) {
   simulation.set_wettability([](double, double) { return 110.0; });  // as the top plate
   const double radius = 4.5;
   const std::size_t beads = simulation.add_droplet({{12, 12, 2}, radius});
-  const double volume = 4.0 / 3.0 * 3.14159265 * std::pow(radius, 3);
+  const double volume = 4.0 / 3.0 * M_PI * std::pow(radius, 3);
   EXPECT_NEAR(static_cast<double>(beads), 6.0 * volume, 1);
   for (int k = 0; k < 1000; ++k) simulation.step();
   const auto snapshot = simulation.observe();

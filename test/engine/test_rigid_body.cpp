@@ -14,8 +14,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 TEST(Shell, CountsAreThoseOfTheDividedIcosahedron) {
   for (const std::uint32_t count : {12u, 32u, 42u, 72u, 312u, 612u, 1242u})
     EXPECT_TRUE(is_shell_count(count)) << count;
@@ -46,7 +44,7 @@ TEST(Shell, SpreadsItsBeadsEvenly) {
     EXPECT_LT(centroid.norm(), 1e-12) << count;
     EXPECT_LT((second - Eigen::Matrix3d::Identity() / 3).norm(), 1e-12) << count;
     // Each of N caps of equal area, packed in hexagons, would be this far from the next.
-    const double even = std::sqrt(8 * pi / (std::sqrt(3.0) * count));
+    const double even = std::sqrt(8 * M_PI / (std::sqrt(3.0) * count));
     EXPECT_GT(closest, 0.88 * even) << count;
     EXPECT_LT(farthest, 1.08 * even) << count;
   }
@@ -57,7 +55,7 @@ TEST(SmoothShell, GivesTheSumsOverTheBeadsOfAFineShell) {
   const std::uint32_t count = nearest_shell_count(5000);
   const std::vector<Vector3d> points = shell_points(count);
   for (const double radius : {1.0, 2.5}) {
-    const SmoothShell smooth(radius, count / (4 * pi * radius * radius), 0.75);
+    const SmoothShell smooth(radius, count / (4 * M_PI * radius * radius), 0.75);
     for (const double distance : {radius + 0.1, radius + 0.3, radius + 0.6, radius + 0.95, 0.8 * radius}) {
       double weight = 0, density = 0;
       const int directions = 60;
@@ -68,7 +66,7 @@ TEST(SmoothShell, GivesTheSumsOverTheBeadsOfAFineShell) {
           const Vector3d d = distance * out - radius * point;
           const double r = d.norm();
           if (r < 1) weight += (1 - r) * d.dot(out) / r / directions;
-          if (r < 0.75) density += 15 / (2 * pi * 0.421875) * (1 - r / 0.75) * (1 - r / 0.75) / directions;
+          if (r < 0.75) density += 15 / (2 * M_PI * 0.421875) * (1 - r / 0.75) * (1 - r / 0.75) / directions;
         }
       }
       EXPECT_NEAR(smooth.weight(distance, 1.0), weight, 0.01 * std::abs(weight) + 0.02) << distance;

@@ -83,7 +83,7 @@ TEST(SplineLiquid, FormsADropWithSparseVapourWhereLiuHasOne) {
     inside += r < 2;
     outside += r > 6;
   }
-  const double volume = 4.0 / 3 * 3.14159265;
+  const double volume = 4.0 / 3 * M_PI;
   EXPECT_LT(outside / (14 * 14 * 14 - volume * 216), inside / (volume * 8) / 200);
 }
 

@@ -10,15 +10,14 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double degree = pi / 180;
+constexpr double degree = M_PI / 180;
 
 /// A cap cut from a sphere, by its geometry alone.
 struct Cap {
   double angle, sphere;
   double foot() const { return sphere * std::sin(angle * degree); }
   double height() const { return sphere * (1 - std::cos(angle * degree)); }
-  double volume() const { return pi * height() * height() * (3 * sphere - height()) / 3; }
+  double volume() const { return M_PI * height() * height() * (3 * sphere - height()) / 3; }
   double thickness(double r) const { return std::sqrt(sphere * sphere - r * r) - sphere + height(); }
 };
 
@@ -36,7 +35,7 @@ TEST(FlatCap, VolumeAndFootprintGiveTheAngleOfItsGeometry) {
 
 TEST(FlatCap, WiderThanAnyCapOfItsVolumeIsAFilm) {
   // Flattest that counts, of thickness 1: r^2 = 2 V / pi (1 - 1/2) as long as it is far wider than thick.
-  const double widest = std::sqrt(1000 / pi);
+  const double widest = std::sqrt(1000 / M_PI);
   EXPECT_TRUE(cap_angle_of_edge(1000, 0.98 * widest, 0.5));
   EXPECT_FALSE(cap_angle_of_edge(1000, 1.02 * widest, 0.5));
 }
@@ -46,7 +45,7 @@ class ScatteredCap : public testing::TestWithParam<double> {
   /// Calls visit(bead) for beads of density 6 in the cap, of the volume of a ball of radius 11, in 20 looks.
   template <class Visit, class Look>
   void scatter(Visit visit, Look look) const {
-    const double volume = 4 * pi / 3 * 11 * 11 * 11;
+    const double volume = 4 * M_PI / 3 * 11 * 11 * 11;
     const Cap cap{GetParam(), cap_sphere_radius(volume, GetParam())};
     const double widest = GetParam() > 90 ? cap.sphere : cap.foot();
     std::uint32_t draw = 0;
@@ -79,7 +78,7 @@ TEST_P(ScatteredCap, ShowsItsAngleByItsEdgeAndByItsMeanHeightAndByACircleWhereOn
         meter.count_sample();
         circle.count_sample();
       });
-  EXPECT_NEAR(meter.volume(), 4 * pi / 3 * 11 * 11 * 11, 60);
+  EXPECT_NEAR(meter.volume(), 4 * M_PI / 3 * 11 * 11 * 11, 60);
   EXPECT_NEAR(meter.angle_of_mean_height(), GetParam(), 0.02 * GetParam());
   ASSERT_TRUE(meter.angle_of_edge());
   // An edge found to a tenth of an r_c: 3 times that share of the angle, and rings are half an r_c wide.

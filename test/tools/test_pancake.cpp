@@ -7,8 +7,6 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 TEST(BridgePressure, IsThatOfACylinderAtNinetyDegrees) {
   EXPECT_NEAR(bridge_pressure(3, 90, 12), 1.0 / 12, 1e-9);
   EXPECT_NEAR(bridge_pressure(3, 90.01, 12), 1.0 / 12, 2e-4);
@@ -19,13 +17,13 @@ TEST(BridgePressure, OfAFlatPancakeIsParkAndHomsys) {
   // Non-wetting, much wider than high: 2 / h + (pi / 4) / R, Park and Homsy (1984), where R is the rim's
   // radius. The next term is of the order of h / R^2.
   const double height = 1, equator = 200;
-  EXPECT_NEAR(bridge_pressure(height, 180, equator), 2 / height + pi / 4 / equator,
+  EXPECT_NEAR(bridge_pressure(height, 180, equator), 2 / height + M_PI / 4 / equator,
               2 * height / (equator * equator));
 }
 
 TEST(BridgePressure, OfABridgeThatIsASphericalZoneIsTheSpheres) {
   // Cut a sphere of radius 10 by planes at +-3: its angle there is 90 + asin(0.3) degrees.
-  EXPECT_NEAR(bridge_pressure(6, 90 + std::asin(0.3) * 180 / pi, 10), 2.0 / 10, 1e-7);
+  EXPECT_NEAR(bridge_pressure(6, 90 + std::asin(0.3) * 180 / M_PI, 10), 2.0 / 10, 1e-7);
 }
 
 TEST(Pancake, HasThePressureOfLaplace) {

@@ -11,7 +11,7 @@
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = M_PI / 180;
 
 /// s of an arc that meets walls at h = -half and half under an angle, 0 in the middle: by its circle.
 double arc_place(double angle, double half, double h) {

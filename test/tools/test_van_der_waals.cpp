@@ -56,7 +56,7 @@ double second_virial_coefficient(double strength, const engine::SplineParameters
     const double r = (k + 0.5) / n;
     const double energy = strength * (spline.repulsion * cubic_spline(r, spline.repulsion_radius) -
                                       spline.attraction * cubic_spline(r, spline.attraction_radius));
-    sum += 2 * 3.14159265358979323846 * r * r * (1 - std::exp(-energy)) / n;
+    sum += 2 * M_PI * r * r * (1 - std::exp(-energy)) / n;
   }
   return sum;
 }

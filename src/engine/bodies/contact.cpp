@@ -6,8 +6,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Vector3d in_wall(const Vector3d& v, const WallContact& contact) {
   return v - contact.normal.dot(v) * contact.normal;
 }
@@ -73,7 +71,7 @@ double wall_adhesion(double attraction, double radius, double beads_per_area, co
     const double to = std::min(1.0, from + 2.0 * radius);
     total += integral(to) - integral(from);
   }
-  return -attraction * pi * per_area * 2.0 * pi * radius * beads_per_area * total;
+  return -attraction * M_PI * per_area * 2.0 * M_PI * radius * beads_per_area * total;
 }
 
 double wall_adhesion_of_disc(double attraction, double radius, double beads_per_length,
@@ -88,11 +86,11 @@ double wall_adhesion_of_disc(double attraction, double radius, double beads_per_
   constexpr int pieces = 2000;  // of half the circle
   double total = 0;
   for (int k = 0; k < pieces; ++k) {
-    const double height = radius * (1 - std::cos(pi * (k + 0.5) / pieces));
+    const double height = radius * (1 - std::cos(M_PI * (k + 0.5) / pieces));
     for (int layer = 0; layer < wall.layers; ++layer)
       total += row(height + 0.5 * layer * wall.lattice_constant);
   }
-  return -attraction / wall.lattice_constant * beads_per_length * 2 * pi * radius / pieces * total;
+  return -attraction / wall.lattice_constant * beads_per_length * 2 * M_PI * radius / pieces * total;
 }
 
 FrictionReport apply_friction(ContactModel model, const Friction& friction,

@@ -14,7 +14,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 /// Beads of a patch: as many as a cell of liquid holds.
 constexpr std::uint32_t patch_size = 24;
 
@@ -23,8 +22,8 @@ std::uint32_t bead_count(const MicroparticlePlacement& placement, int dimensions
   if (placement.smooth) return 1;
   if (placement.beads > 0) return placement.beads;
   if (dimensions == 2)
-    return static_cast<std::uint32_t>(std::lround(usual_beads_per_length * 2 * pi * placement.radius));
-  return nearest_shell_count(usual_beads_per_area * 4 * pi * placement.radius * placement.radius);
+    return static_cast<std::uint32_t>(std::lround(usual_beads_per_length * 2 * M_PI * placement.radius));
+  return nearest_shell_count(usual_beads_per_area * 4 * M_PI * placement.radius * placement.radius);
 }
 
 /// Bounding radius of a body of points around their origin.
@@ -63,16 +62,16 @@ void check_shell(const MicroparticlePlacement& placement, Violations& check) {
                beads, nearest_shell_count(beads));
   check.unless(beads <= largest_bead_count, "beads: {}, allowed: up to {}", beads, largest_bead_count);
   // A count that is rounded down to an even spread may lie a hair below.
-  const double area = 4 * pi * placement.radius * placement.radius;
+  const double area = 4 * M_PI * placement.radius * placement.radius;
   check.unless(beads >= 0.999 * fewest_beads_per_area * area,
                "beads: {} on radius {} r_c let liquid in, allowed: {:.0f} or more, or a radius up to {:.4g}",
                beads, placement.radius, std::ceil(fewest_beads_per_area * area),
-               std::sqrt(beads / (4 * pi * fewest_beads_per_area)));
+               std::sqrt(beads / (4 * M_PI * fewest_beads_per_area)));
 }
 
 void check_circle(const MicroparticlePlacement& placement, Violations& check) {
   const std::uint32_t beads = bead_count(placement, 2);
-  const double fewest = std::ceil(fewest_beads_per_length * 2 * pi * placement.radius);
+  const double fewest = std::ceil(fewest_beads_per_length * 2 * M_PI * placement.radius);
   check.unless(beads <= largest_bead_count, "beads: {}, allowed: up to {}", beads, largest_bead_count);
   check.unless(beads >= fewest, "beads: {} around a disc of radius {} r_c let liquid in, allowed: {} or more",
                beads, placement.radius, fewest);
@@ -88,9 +87,10 @@ void check_contact(const MicroparticlePlacement& placement, const Parameters& pa
   WallParameters wall = parameters.wall;  // the denser one's
   if (parameters.label_grid.grid)
     wall.lattice_constant = std::min(wall.lattice_constant, parameters.label_grid.lattice_constant);
-  const double beads_per_area = placement.smooth ? usual_beads_per_area : beads / (4 * pi * radius * radius);
+  const double beads_per_area =
+      placement.smooth ? usual_beads_per_area : beads / (4 * M_PI * radius * radius);
   const double load =
-      flat ? wall_adhesion_of_disc(model.wall_attraction, radius, beads / (2 * pi * radius), wall)
+      flat ? wall_adhesion_of_disc(model.wall_attraction, radius, beads / (2 * M_PI * radius), wall)
            : wall_adhesion(model.wall_attraction, radius, beads_per_area, wall);
   const double mass = mass_of(placement, parameters.dimensions);
   const double largest = largest_elastic_modulus(mass, placement.radius, load, parameters.time_step);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <vector>
 
 #include "engine/bodies/microparticles.h"
@@ -9,9 +10,9 @@ namespace dmf::engine {
 constexpr std::uint32_t largest_bead_count = 20000;
 
 /// What Lan's microparticle has: 612 beads on a sphere of radius 1, per r_c^2.
-constexpr double usual_beads_per_area = 612 / (4 * 3.14159265358979323846);
+constexpr double usual_beads_per_area = 612 / (4 * M_PI);
 /// The fewest that keep the liquid out: 312 on a sphere of radius 1 (Lan 3.1.2), per r_c^2.
-constexpr double fewest_beads_per_area = 312 / (4 * 3.14159265358979323846);
+constexpr double fewest_beads_per_area = 312 / (4 * M_PI);
 /// With two dimensions, on the circle around a disc, per r_c: to the liquid, of some 4 beads per r_c^2, they
 /// are what those above are to one of 6 per r_c^3.
 constexpr double usual_beads_per_length = 32, fewest_beads_per_length = 16;

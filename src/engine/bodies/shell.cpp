@@ -78,7 +78,7 @@ std::vector<Vector3d> divided_icosahedron(int h, int k) {
 /// Pushes points apart along the sphere with a repulsion that falls as 1 / r^4: faces of the icosahedron are
 /// denser in the middle than at the corners.
 void spread(std::vector<Vector3d>& points) {
-  const double spacing = std::sqrt(4 * 3.14159265358979 / static_cast<double>(points.size()));
+  const double spacing = std::sqrt(4 * M_PI / static_cast<double>(points.size()));
   const double reach = 4 * spacing;
   std::vector<std::vector<std::uint32_t>> near(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i)
@@ -144,7 +144,7 @@ std::vector<Vector3d> shell_points(std::uint32_t beads) {
 std::vector<Vector3d> circle_points(std::uint32_t beads) {
   assert(beads >= 3);
   // A library's sine and cosine differ in the last bit from processor to processor.
-  const double angle = 2 * 3.14159265358979323846 / beads;
+  const double angle = 2 * M_PI / beads;
   double cosine = 0, sine = 0, term = 1;
   for (int k = 0; k < 40; k += 2) {
     cosine += term;

@@ -11,8 +11,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Vector3d vector_of(const Record& record) { return {record.x, record.y, record.z}; }
 
 std::uint32_t key_bits(float value) {
@@ -52,7 +50,7 @@ double SmoothShell::weight(double distance, double range) const {
   const auto integral = [c, range](double r) {
     return r * (r * r / 3 + c - r / range * (r * r / 4 + c / 2));
   };
-  return pi * radius_ * beads_per_area_ / (distance * distance) * (integral(to) - integral(from));
+  return M_PI * radius_ * beads_per_area_ / (distance * distance) * (integral(to) - integral(from));
 }
 
 double SmoothShell::density(double distance) const {
@@ -60,7 +58,7 @@ double SmoothShell::density(double distance) const {
   const double from = std::abs(distance - radius_), to = std::min(a, distance + radius_);
   if (from >= to) return 0;
   const auto integral = [a](double r) { return r * r * (0.5 - r / a * (2.0 / 3.0 - 0.25 * r / a)); };
-  return density_normalization(a) * 2 * pi * radius_ * beads_per_area_ / distance *
+  return density_normalization(a) * 2 * M_PI * radius_ * beads_per_area_ / distance *
          (integral(to) - integral(from));
 }
 

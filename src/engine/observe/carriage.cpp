@@ -1,6 +1,7 @@
 #include "engine/observe/carriage.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dmf::engine {
 namespace {
@@ -38,7 +39,7 @@ Surroundings look_around_smooth(const Microparticle& particle, const SmoothNeigh
     }
   const auto cubed = [](double a) { return a * a * a; };
   const double all =
-      parameters.liquid.bulk_density * 4.0 / 3.0 * 3.14159265 * (cubed(radius + 1) - cubed(radius + gap));
+      parameters.liquid.bulk_density * 4.0 / 3.0 * M_PI * (cubed(radius + 1) - cubed(radius + gap));
   found.immersion = std::min(1.0, neighbours / all);
   found.neighbours_of_droplet.erase(0);  // vapour
   return found;

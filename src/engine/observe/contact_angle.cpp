@@ -7,7 +7,6 @@
 namespace dmf::engine {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 /// Rows below this height are left out of the fit: the liquid is layered there.
 constexpr double lowest_fitted = 1.5;
 /// Samples, after forgetting, below which no angle is reported.
@@ -127,7 +126,7 @@ std::optional<Circle> fit_circle(const std::vector<Eigen::Vector2d>& points) {
 }
 
 double contact_angle_of(const Circle& circle) {
-  return std::acos(std::clamp(-circle.z / circle.radius, -1.0, 1.0)) * 180.0 / pi;
+  return std::acos(std::clamp(-circle.z / circle.radius, -1.0, 1.0)) * 180.0 / M_PI;
 }
 
 void SessileAngle::add(const Eigen::Vector3f& from_axis_and_wall) {
@@ -138,7 +137,7 @@ std::optional<Circle> SessileAngle::circle(double bulk_density) const {
   const double half_bin = DensityProfile::bin / 2;
   std::vector<Eigen::Vector2d> points = profile_.surface(0.5 * bulk_density, [&](double s) {
     const double inner = s - half_bin, outer = s + half_bin;
-    return pi * (outer * outer - inner * inner) * DensityProfile::bin;
+    return M_PI * (outer * outer - inner * inner) * DensityProfile::bin;
   });
   // The axis is the circle's own: mirror the points, and the fitted centre lies on it.
   const std::size_t count = points.size();

@@ -9,8 +9,6 @@ namespace dmf::tools {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Friction that fades with the exponent s and ends at r_D, under plain DPD with the repulsion a.
 struct Friction {
   double exponent, radius, repulsion;
@@ -41,7 +39,7 @@ struct Theory {
     const double friction = liquid.random_amplitude * liquid.random_amplitude / (2 * liquid.temperature);
     const double density = liquid.bulk_density, radius = liquid.dissipation_radius;
     const auto moment = [&](int power) {
-      return 4 * pi * std::pow(radius, power + 3) * std::beta(power + 3, liquid.dissipation_exponent + 1);
+      return 4 * M_PI * std::pow(radius, power + 3) * std::beta(power + 3, liquid.dissipation_exponent + 1);
     };
     diffusivity = 3 * liquid.temperature / (friction * density * moment(0));
     viscosity = density * diffusivity / 2 + friction * density * density * moment(2) / 30;

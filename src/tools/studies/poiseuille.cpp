@@ -11,7 +11,6 @@ namespace {
 
 using engine::Reflection;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double acceleration = 0.02, half_width = 15.25, friction = 4.5;  // of the scenes
 
 /// What Lan's 2.3 leaves open, and what it says.
@@ -23,8 +22,8 @@ struct Channel {
 
   /// Liu's table 1 and Lan (2.32), (2.33), of a liquid that no repulsion orders.
   double theory(double density) const {
-    return dimensions == 2 ? 6 / (pi * friction) + pi * friction * density * density / 480
-                           : 45 / (4 * pi * friction) + 2 * pi * friction * density * density / 1575;
+    return dimensions == 2 ? 6 / (M_PI * friction) + M_PI * friction * density * density / 480
+                           : 45 / (4 * M_PI * friction) + 2 * M_PI * friction * density * density / 1575;
   }
 };
 
