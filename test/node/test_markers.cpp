@@ -158,7 +158,7 @@ TEST_F(MarkersTest, AMicroparticleIsAStripedBallThatTurnsWithIt) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(corner(k).norm(), 1.5 * 0.02, 1e-9);
     reds.insert(ball.colors[i].r);
   }
-  const double sphere = 4.0 / 3 * 3.14159265 * std::pow(1.5 * 0.02, 3);
+  const double sphere = 4.0 / 3 * M_PI * std::pow(1.5 * 0.02, 3);
   EXPECT_NEAR(volume / sphere, 1, 0.05) << "closed";
   EXPECT_EQ(reds.size(), 2u) << "two colours";
 }
