@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "node/convert_values.h"
@@ -94,6 +96,13 @@ dmf_sim::Microparticle to_microparticle(const engine::MicroparticleObservation& 
 }
 
 }  // namespace
+
+double fitting_display_scale(const chip::Scene& scene) {
+  constexpr double view = 0.9;  // m across, of config/rviz/chip.rviz
+  const double largest = view / (scene.parameters.domain.size().norm() * scene.units.length_m);
+  const double digit = std::pow(10, std::floor(std::log10(largest)));
+  return std::clamp(std::floor(largest / digit) * digit, 1.0, 1e6);
+}
 
 std::string electrode_frame(std::uint32_t channel) { return fmt::format("chip/electrode_{}", channel); }
 std::string droplet_frame(std::uint32_t id) { return fmt::format("chip/droplet_{}", id); }
@@ -333,9 +342,12 @@ std::vector<geometry_msgs::TransformStamped> microparticle_transforms(const Fram
   return transforms;
 }
 
-std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
-                                                                  ros::Time stamp) {
-  std::vector<geometry_msgs::TransformStamped> transforms;
+std::vector<geometry_msgs::TransformStamped> static_transforms(const ConversionContext& context,
+                                                               ros::Time stamp) {
+  const engine::Domain& domain = context.scene.parameters.domain;
+  const Vector3d middle = 0.5 * (domain.lower + domain.upper);
+  std::vector<geometry_msgs::TransformStamped> transforms = {
+      to_transform(kMiddleFrame, middle * context.display_length(), stamp)};
   for (const chip::Electrode& electrode : context.scene.layout.electrodes()) {
     const Vector3d position(electrode.centroid.x(), electrode.centroid.y(), context.plate_z());
     transforms.push_back(

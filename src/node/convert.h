@@ -44,7 +44,12 @@ struct ConversionContext {
   double plate_z() const { return scene.parameters.domain.lower.z(); }
 };
 
+/// With it the diagonal of the scene's domain is 0.45 to 0.9 m on the screen, what RViz shows from 1 m away,
+/// so that every chip fits as it opens. One digit and zeros, 1 to 10^6.
+double fitting_display_scale(const chip::Scene& scene);
+
 constexpr const char* kChipFrame = "chip";
+constexpr const char* kMiddleFrame = "chip/middle";
 std::string electrode_frame(std::uint32_t channel);  ///< chip/electrode_<channel>
 std::string droplet_frame(std::uint32_t id);         ///< chip/droplet_<id>
 std::string microparticle_frame(std::uint32_t id);   ///< chip/microparticle_<id>
@@ -83,9 +88,10 @@ std::vector<geometry_msgs::TransformStamped> droplet_transforms(const Frame& fra
 /// chip -> chip/microparticle_<id> at each centre of mass, turned as the body is, scaled.
 std::vector<geometry_msgs::TransformStamped> microparticle_transforms(const Frame& frame,
                                                                       const ConversionContext& context);
-/// chip -> chip/electrode_<n> at each centroid on the plate, unrotated, scaled.
-std::vector<geometry_msgs::TransformStamped> electrode_transforms(const ConversionContext& context,
-                                                                  ros::Time stamp);
+/// What stays where it is, unrotated, scaled: chip -> chip/electrode_<n> at each centroid on the plate, and
+/// chip/middle at the middle of the domain.
+std::vector<geometry_msgs::TransformStamped> static_transforms(const ConversionContext& context,
+                                                               ros::Time stamp);
 
 /// The engine's health (ERROR after a fault, WARN when the temperature is more than a tenth off) and the
 /// rail (ERROR while it is halted).

@@ -8,8 +8,8 @@ namespace dmf::node {
 
 Node::Node(const Options& options, const chip::Scene& scene)
     : scene_(scene),
-      context_{scene_, options.display_scale, options.engine.ros_seconds_per_time_unit,
-               ros::WallTime::now().toNSec()},
+      context_{scene_, options.display_scale.value_or(fitting_display_scale(scene_)),
+               options.engine.ros_seconds_per_time_unit, ros::WallTime::now().toNSec()},
       private_handle_("~"),
       memory_(ros::this_node::getName()),
       series_(automatic_checkpoints(options, ros::this_node::getName(), scene_)),

@@ -29,7 +29,9 @@ Options load_options(const ros::NodeHandle& private_handle) {
   reader.number("display_rate", 0.1, 1000, options.engine.display_rate);
   reader.number("max_steps_per_second", 0, 1e9, options.engine.max_steps_per_second);
   reader.number("ros_seconds_per_time_unit", 1e-6, 1e3, options.engine.ros_seconds_per_time_unit);
-  reader.number("display_scale", 1, 1e6, options.display_scale);
+  double display_scale = 0;  // not given
+  reader.number("display_scale", 1, 1e6, display_scale);
+  if (display_scale > 0) options.display_scale = display_scale;
   int hash_interval = static_cast<int>(options.engine.hash_interval);
   reader.integer("hash_interval", 0, 1'000'000'000, hash_interval);
   options.engine.hash_interval = static_cast<std::uint32_t>(hash_interval);

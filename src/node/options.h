@@ -18,7 +18,7 @@ struct Options {
   engine::Execution execution;        ///< ~threads (0 to 256, 0: all cores), ~kernel
   EngineSettings engine;              ///< ~paused, ~publish_rate, ~display_rate, ~max_steps_per_second,
                                       ///< ~ros_seconds_per_time_unit, ~checkpoint_period, ~hash_interval
-  double display_scale = 1000;        ///< ~display_scale: metres on the screen per metre on the chip
+  std::optional<double> display_scale;   ///< ~display_scale: metres on the screen per metre on the chip
   std::filesystem::path checkpoint_dir;  ///< ~checkpoint_dir; default: dmf_sim in $ROS_HOME or ~/.ros
   int checkpoint_keep = 3;               ///< ~checkpoint_keep: how many automatic checkpoints stay
   std::string resume = "false";          ///< ~resume: false, true or respawned, see node/start.h

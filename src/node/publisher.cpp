@@ -65,7 +65,7 @@ Publisher::Publisher(ros::NodeHandle& handle, ros::NodeHandle& private_handle, E
 
   layout_.publish(to_layout(context_));
   scene_.publish(to_scene(*engine_.inspect(false), hash_interval, context_));
-  static_transforms_.sendTransform(electrode_transforms(context_, to_ros_time(RunClock::kStart)));
+  static_transforms_.sendTransform(static_transforms(context_, to_ros_time(RunClock::kStart)));
   thread_ = std::thread([this] { loop(); });
 }
 

@@ -120,8 +120,11 @@ class RunTest(unittest.TestCase):
     def test_frames_are_scaled_for_the_screen(self):
         static = Listener("/tf_static", TFMessage)
         frames = {t.child_frame_id: t for t in static.wait().transforms}
-        self.assertEqual(sorted(frames), [f"chip/electrode_{n}" for n in range(4)])
-        self.assertAlmostEqual(frames["chip/electrode_0"].transform.translation.x, -0.09, delta=1e-9)
+        self.assertEqual(sorted(frames), [f"chip/electrode_{n}" for n in range(4)] + ["chip/middle"])
+        layout = self.chip.get_layout().layout
+        self.assertAlmostEqual(frames["chip/electrode_0"].transform.translation.x,
+                               layout.display_scale * layout.electrodes[0].centroid.x, delta=1e-9)
+        self.assertTrue(0.35 < layout.display_scale * (layout.upper.x - layout.lower.x) < 0.9, layout)
         moving = Listener("/tf", TFMessage).wait().transforms
         self.assertEqual([t.child_frame_id for t in moving], ["chip/droplet_1"])
         self.assertEqual(moving[0].header.frame_id, "chip")

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -295,10 +296,28 @@ TEST_F(ConvertTest, TransformsAreScaledForTheScreen) {
   EXPECT_EQ(bodies[0].child_frame_id, "chip/microparticle_3");
   EXPECT_DOUBLE_EQ(bodies[0].transform.translation.z, 1.5 * 2e-5 * 1000);
   EXPECT_DOUBLE_EQ(bodies[0].transform.rotation.y, std::sin(0.5)) << "turned as the body is";
-  const auto electrodes = electrode_transforms(context_, ros::Time(1));
-  ASSERT_EQ(electrodes.size(), 4u);
-  EXPECT_EQ(electrodes[3].child_frame_id, "chip/electrode_3");
-  EXPECT_NEAR(electrodes[3].transform.translation.x, 9 * 2e-5 * 1000, 1e-9);
+  const auto fixed = static_transforms(context_, ros::Time(1));
+  ASSERT_EQ(fixed.size(), 1u + 4u);
+  EXPECT_EQ(fixed[0].child_frame_id, "chip/middle");
+  const engine::Domain& domain = scene_.parameters.domain;
+  EXPECT_NEAR(fixed[0].transform.translation.z, (domain.lower.z() + domain.upper.z()) / 2 * 2e-5 * 1000,
+              1e-9);
+  EXPECT_EQ(fixed[4].child_frame_id, "chip/electrode_3");
+  EXPECT_NEAR(fixed[4].transform.translation.x, 9 * 2e-5 * 1000, 1e-9);
+}
+
+TEST_F(ConvertTest, AChipOfAnySizeFitsTheScreen) {
+  for (const double length : {1e-9, 7e-7, 1e-5, 2e-5, 5e-5, 1.3e-4, 1e-3}) {
+    scene_.units.length_m = length;
+    const double scale = fitting_display_scale(scene_);
+    const double shown = scene_.parameters.domain.size().norm() * length * scale;
+    EXPECT_LE(shown, 0.9) << length;
+    if (scale < 1e6) {
+      EXPECT_GT(shown, 0.45) << length;
+    }
+    const std::string digits = fmt::format("{:.0f}", scale);
+    EXPECT_EQ(digits.find_last_not_of('0'), 0u) << "a number to remember: " << digits;
+  }
 }
 
 TEST_F(ConvertTest, DiagnosticsTellSoundWarmAndHalted) {
