@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "yaml/units.h"
+
 namespace dmf::chip {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-
-double cosine(double degrees) { return std::cos(degrees * kDegree); }
+double cosine(double angle) { return std::cos(angle * degree); }
 
 /// V_a^2 / V^2 at a frequency.
 double roll_off(double frequency, double cutoff_frequency) {
@@ -41,7 +41,7 @@ double Electrowetting::contact_angle_of_number(double number) const {
   const double wanted = std::min(cosine(rest_angle) + number, 1.0);
   // The clamp also takes away the last bit that acos(cos(theta)) may be off, so that the ends are met
   // exactly.
-  return std::clamp(std::acos(wanted) / kDegree, saturation_angle, rest_angle);
+  return std::clamp(std::acos(wanted) / degree, saturation_angle, rest_angle);
 }
 
 double Electrowetting::voltage_of_number(double number, double frequency) const {

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "yaml/units.h"
+
 namespace dmf::chip {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kLongestPiece = 0.25;  // r_c, of a contact line
 constexpr double kPiecesInAGap = 8;
 constexpr double kThermalWork = 10;    // k_BT, that thermal motion undoes
@@ -249,7 +250,7 @@ class Explainer {
 LinePull line_pull(const Polygon& outline, const engine::ContactAngleField& angle, double piece) {
   LinePull pull;
   for_each_piece(outline, piece, [&](const Vector2d& middle, const Vector2d& outward) {
-    const double cosine = std::cos(angle(middle.x(), middle.y()) * kDegree);
+    const double cosine = std::cos(angle(middle.x(), middle.y()) * degree);
     pull.net += cosine * outward;
     const std::array<double, 4> towards{outward.x(), outward.y(), -outward.x(), -outward.y()};
     for (std::size_t side = 0; side < towards.size(); ++side)

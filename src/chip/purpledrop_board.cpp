@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chip/board_drawing.h"
+#include "yaml/units.h"
 
 namespace dmf::chip {
 
@@ -15,7 +16,6 @@ using Json = nlohmann::json;
 
 /// Real files are nested 8 deep.
 constexpr int kMaxDepth = 32;
-constexpr double kDegree = M_PI / 180;
 
 std::string shown(const Json& value) {
   if (value.is_object()) return "an object";
@@ -197,7 +197,7 @@ class PurpledropReader {
     if (const Json* own = inherited(electrode, from, "origin", place)) {
       moved = point(*own, place + ".origin").value_or(moved);
     }
-    const Eigen::Rotation2Dd turn(rotation * kDegree);
+    const Eigen::Rotation2Dd turn(rotation * degree);
     Polygon outline;
     for (std::size_t i = 0; i < corners->size(); ++i) {
       const auto corner = point((*corners)[i], fmt::format("{}.polygon[{}]", place, i));

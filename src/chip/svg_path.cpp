@@ -11,6 +11,7 @@
 #include "chip/board_drawing.h"
 #include "engine/parameters.h"
 #include "yaml/quantity.h"
+#include "yaml/units.h"
 
 namespace dmf::chip {
 
@@ -18,8 +19,6 @@ namespace {
 
 using Eigen::Affine2d;
 using Eigen::Vector2d;
-
-constexpr double kDegree = M_PI / 180;
 
 /// How far a chord may stray from its curve, as a fraction of the curve's size.
 constexpr double kFlatness = 1e-3;
@@ -267,7 +266,7 @@ class PathReader {
         break;
       }
       case 'A': {
-        const double rx = text_.number(), ry = text_.number(), tilt = text_.number() * kDegree;
+        const double rx = text_.number(), ry = text_.number(), tilt = text_.number() * degree;
         const bool large = text_.flag(), sweep = text_.flag();
         outline_.arc({rx, ry}, tilt, large, sweep, pair());
         break;
@@ -328,11 +327,11 @@ Affine2d svg_transform(std::string_view transform) {
     if (name == "matrix") product = product * affine(n[0], n[1], n[2], n[3], n[4], n[5]);
     if (name == "translate") product = product * affine(1, 0, 0, 1, n[0], n.size() > 1 ? n[1] : 0);
     if (name == "scale") product = product * affine(n[0], 0, 0, n.size() > 1 ? n[1] : n[0], 0, 0);
-    if (name == "skewX") product = product * affine(1, 0, std::tan(n[0] * kDegree), 1, 0, 0);
-    if (name == "skewY") product = product * affine(1, std::tan(n[0] * kDegree), 0, 1, 0, 0);
+    if (name == "skewX") product = product * affine(1, 0, std::tan(n[0] * degree), 1, 0, 0);
+    if (name == "skewY") product = product * affine(1, std::tan(n[0] * degree), 0, 1, 0, 0);
     if (name == "rotate") {
       const Vector2d about = n.size() > 1 ? Vector2d(n[1], n[2]) : Vector2d::Zero();
-      product = product * Eigen::Translation2d(about) * Eigen::Rotation2Dd(n[0] * kDegree) *
+      product = product * Eigen::Translation2d(about) * Eigen::Rotation2Dd(n[0] * degree) *
                 Eigen::Translation2d(-about);
     }
   }

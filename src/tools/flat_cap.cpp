@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "yaml/units.h"
+
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = M_PI / 180;
 constexpr double ring_width = 0.5;  ///< r_c
 constexpr double middle = 2;        ///< r_c
 

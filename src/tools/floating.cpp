@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/surfactant.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
@@ -109,7 +110,7 @@ FloatingResult run_floating(const FloatingRun& run) {
   const double cosine = -result.height / result.effective_radius;
   result.angle = result.immersion < 0.02 || result.effective_radius < 0
                      ? 180.0
-                     : std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI;
+                     : std::acos(std::clamp(cosine, -1.0, 1.0)) / degree;
   return result;
 }
 

@@ -6,11 +6,11 @@
 #include "chip/label_shape.h"
 #include "engine/noise.h"
 #include "engine/simulation.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = M_PI / 180;
 constexpr double slab = 0.437 * 10;     ///< period along y, r_c
 constexpr double voxel = 0.437;         ///< half the lattice constant of walls, r_c
 constexpr double behind = 2;            ///< empty space behind the slug, r_c

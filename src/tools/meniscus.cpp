@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "yaml/units.h"
+
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = M_PI / 180;
 constexpr double bin = 0.5;               ///< both ways, r_c
 constexpr double nearest_to_walls = 1.5;  ///< of the rows that are fitted, r_c
 constexpr double steepest = 0.999;        ///< sine of the slope of an arc that is being fitted

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "yaml/units.h"
+
 namespace dmf::tools {
 namespace {
 
@@ -80,7 +82,7 @@ PancakeResult run_pancake(const PancakeRun& run, const engine::ContactAngleCurve
 }
 
 double bridge_pressure(double height, double angle, double equator) {
-  const double sine = std::sin(angle * M_PI / 180), cosine = std::cos(angle * M_PI / 180);
+  const double sine = std::sin(angle * degree), cosine = std::cos(angle * degree);
   if (cosine == 0 || std::abs(angle - 90) < 1e-9) return 1 / equator;
   // Half of the height that a surface of pressure p has, from the equator to the plate. Differences of nearly
   // equal numbers are multiplied out: close to 90 degrees all radii are nearly the equator's.

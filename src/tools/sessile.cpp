@@ -7,11 +7,10 @@
 #include "engine/observe/contact_angle.h"
 #include "tools/flat_cap.h"
 #include "tools/largest_droplet.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
-
-constexpr double degree = M_PI / 180.0;
 
 /// What looks at a droplet, over the whole measurement or half of it.
 struct Meters {

@@ -8,6 +8,7 @@
 
 #include "chip/experiment.h"
 #include "chip/label_shape.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
@@ -65,7 +66,7 @@ std::vector<ChannelSection> sections_of(const LabelGrid& grid) {
 
 }  // namespace
 
-double Slopes::angle() const { return std::atan2(wide - narrow, run) * 180 / M_PI; }
+double Slopes::angle() const { return std::atan2(wide - narrow, run) / degree; }
 
 void lay_slopes(const Slopes& slopes, chip::Scene& scene) {
   const engine::Domain& domain = scene.parameters.domain;

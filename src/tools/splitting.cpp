@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chip/experiment.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
@@ -61,7 +62,7 @@ SplittingResult run_splitting(const SplittingRun& run) {
 
 double largest_splitting_height(double rest_angle, double on_angle) {
   const double end = 1 / std::sqrt(M_PI), neck = (1 - end * end) / (2 * end);
-  const double contrast = std::cos(on_angle * M_PI / 180) - std::cos(rest_angle * M_PI / 180);
+  const double contrast = std::cos(on_angle * degree) - std::cos(rest_angle * degree);
   return contrast / (1 / neck + 1 / end);
 }
 

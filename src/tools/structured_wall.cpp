@@ -10,11 +10,11 @@
 #include "engine/observe/contact_angle.h"
 #include "engine/simulation.h"
 #include "tools/sessile.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = M_PI / 180;
 constexpr double slab = 3.5;            ///< r_c; Yao's is 3, the least that a periodic side may be is 3.15
 constexpr double ceiling = 50;          ///< above the ridges, r_c
 constexpr double voxel = 0.5;           ///< r_c

@@ -60,7 +60,7 @@ inline constexpr std::array kUnitNames{
     UnitName{"nl", Dimension::volume, 1e-12},
     UnitName{"pl", Dimension::volume, 1e-15},
     UnitName{"deg", Dimension::angle, 1},
-    UnitName{"rad", Dimension::angle, 180 / M_PI},
+    UnitName{"rad", Dimension::angle, 1 / degree},
     UnitName{"V", Dimension::voltage, 1},
     UnitName{"mV", Dimension::voltage, 1e-3},
     UnitName{"kV", Dimension::voltage, 1e3},

@@ -3,6 +3,9 @@
 
 namespace dmf {
 
+/// One degree in radians. Angles are given and published in degrees and computed with in radians.
+inline constexpr double degree = M_PI / 180;
+
 /// What one reduced unit is in SI. The only place where the two meet.
 ///
 /// The reduced units of the engine are r_c (length), m (mass of one bead) and k_BT (energy), which fixes the

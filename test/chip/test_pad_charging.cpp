@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "chip/experiment.h"
+#include "yaml/units.h"
 
 namespace dmf::chip {
 namespace {
@@ -33,12 +34,12 @@ std::string state_of(const Experiment& chip) {
 
 /// cos theta on its way from 110 degrees to 60 after so many steps.
 double cosine_after(double steps) {
-  const double rest = std::cos(110 * M_PI / 180);
+  const double rest = std::cos(110 * degree);
   return rest + (0.5 - rest) * (1 - std::exp(-steps / 50));
 }
 
 double cosine_of(const Experiment& chip, std::size_t pad) {
-  return std::cos(chip.electrodes()[pad].contact_angle * M_PI / 180);
+  return std::cos(chip.electrodes()[pad].contact_angle * degree);
 }
 
 TEST(PadCharging, GoesExponentiallyToItsAngleAndArrives) {
@@ -68,7 +69,7 @@ TEST(PadCharging, ACommandInBetweenFindsThePadWhereItIs) {
   chip.apply(SetElectrodes{{2}});
   EXPECT_NEAR(cosine_of(chip, 1), cosine_after(23), 1e-12) << "not where it was last shown";
   run(chip, 8);
-  const double rest = std::cos(110 * M_PI / 180);
+  const double rest = std::cos(110 * degree);
   EXPECT_NEAR(cosine_of(chip, 1), rest + (cosine_after(23) - rest) * std::exp(-7. / 50), 1e-12);
   EXPECT_NEAR(cosine_of(chip, 2), cosine_after(7), 1e-12);
 }
@@ -81,7 +82,7 @@ TEST(PadCharging, AboveSaturationItIsNoSlowerToLeave) {
   EXPECT_EQ(chip.electrodes()[1].contact_angle, 60);
   chip.apply(SetElectrodes{});
   run(chip, 11);
-  const double rest = std::cos(110 * M_PI / 180);
+  const double rest = std::cos(110 * degree);
   EXPECT_NEAR(cosine_of(chip, 1), rest + (0.5 - rest) * std::exp(-10. / 50), 1e-12);
 }
 

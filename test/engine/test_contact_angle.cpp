@@ -5,6 +5,7 @@
 
 #include "engine/observe/contact_angle.h"
 #include "systems.h"
+#include "yaml/units.h"
 
 namespace dmf::engine {
 namespace {
@@ -14,7 +15,7 @@ constexpr double density = 6;
 /// Points of a cap with the given contact angle and sphere radius, standing on z = 0 at the origin.
 template <class Visit>
 void cap_points(double angle, double radius, std::uint32_t stream, Visit visit) {
-  const double centre = -radius * std::cos(angle * M_PI / 180);
+  const double centre = -radius * std::cos(angle * degree);
   const double top = centre + radius;
   const std::uint32_t count = static_cast<std::uint32_t>(density * 4 * radius * radius * top);
   for (std::uint32_t k = 0; k < count; ++k) {

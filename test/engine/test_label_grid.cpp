@@ -9,6 +9,7 @@
 #include "engine/walls/solid_beads.h"
 #include "refusal.h"
 #include "systems.h"
+#include "yaml/units.h"
 
 namespace dmf::engine {
 namespace {
@@ -104,7 +105,7 @@ TEST(LabelGrid, NormalsPointOutOfFlatFacesAndOfABall) {
         Vector3d(scatter(3 * k) - .5, scatter(3 * k + 1) - .5, scatter(3 * k + 2) - .5).normalized();
     worst = std::min(worst, ball.normal(Vector3d(10, 10, 10) + 7 * way).dot(way));
   }
-  EXPECT_GT(worst, std::cos(25 * M_PI / 180));  // single voxels' faces would be off by up to 55 degrees
+  EXPECT_GT(worst, std::cos(25 * degree));  // single voxels' faces would be off by up to 55 degrees
 }
 
 TEST(LabelGrid, AFreeWayEndsOnTheFirstFace) {

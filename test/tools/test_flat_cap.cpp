@@ -6,11 +6,10 @@
 #include "engine/noise.h"
 #include "engine/observe/contact_angle.h"
 #include "tools/flat_cap.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
-
-constexpr double degree = M_PI / 180;
 
 /// A cap cut from a sphere, by its geometry alone.
 struct Cap {

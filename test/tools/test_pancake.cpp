@@ -1,4 +1,5 @@
 #include "tools/pancake.h"
+#include "yaml/units.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ TEST(BridgePressure, OfAFlatPancakeIsParkAndHomsys) {
 
 TEST(BridgePressure, OfABridgeThatIsASphericalZoneIsTheSpheres) {
   // Cut a sphere of radius 10 by planes at +-3: its angle there is 90 + asin(0.3) degrees.
-  EXPECT_NEAR(bridge_pressure(6, 90 + std::asin(0.3) * 180 / M_PI, 10), 2.0 / 10, 1e-7);
+  EXPECT_NEAR(bridge_pressure(6, 90 + std::asin(0.3) / degree, 10), 2.0 / 10, 1e-7);
 }
 
 TEST(Pancake, HasThePressureOfLaplace) {

@@ -7,11 +7,10 @@
 #include "tools/meniscus.h"
 #include "tools/plug.h"
 #include "tools/wall_tension.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
-
-constexpr double degree = M_PI / 180;
 
 /// s of an arc that meets walls at h = -half and half under an angle, 0 in the middle: by its circle.
 double arc_place(double angle, double half, double h) {

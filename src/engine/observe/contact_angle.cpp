@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "yaml/units.h"
+
 namespace dmf::engine {
 namespace {
 
@@ -126,7 +128,7 @@ std::optional<Circle> fit_circle(const std::vector<Eigen::Vector2d>& points) {
 }
 
 double contact_angle_of(const Circle& circle) {
-  return std::acos(std::clamp(-circle.z / circle.radius, -1.0, 1.0)) * 180.0 / M_PI;
+  return std::acos(std::clamp(-circle.z / circle.radius, -1.0, 1.0)) / degree;
 }
 
 void SessileAngle::add(const Eigen::Vector3f& from_axis_and_wall) {

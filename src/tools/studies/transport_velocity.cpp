@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/cases.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 
@@ -27,7 +28,7 @@ Findings study_transport_velocity(const StudyOptions& options) {
 
   // What the force on the contact line makes of it: V^2 - V_T^2 up to saturation, as fast as here at 40 V.
   const auto force = [&](double voltage) {
-    const auto cosine = [](double degrees) { return std::cos(degrees * M_PI / 180); };
+    const auto cosine = [](double angle) { return std::cos(angle * degree); };
     return cosine(scene.electrowetting.contact_angle(voltage)) - cosine(scene.electrowetting.rest_angle);
   };
   const double unit = results.mean(label(40), "velocity").mean / force(40);

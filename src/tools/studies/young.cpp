@@ -7,11 +7,11 @@
 #include "tools/interface.h"
 #include "tools/plug.h"
 #include "tools/wall_tension.h"
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {
 
-constexpr double degree = M_PI / 180;
 constexpr double own_time_step = 0.02;
 
 /// Chen's table 2: a of the walls and the plug; 10 of the walls and what is around it. Degrees.
