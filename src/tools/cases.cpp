@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <exception>
 #include <set>
-#include <thread>
+#include <stdexcept>
 
+#include "engine/archive.h"
 #include "engine/simulation.h"
+#include "tools/processes.h"
 #include "tools/saved_run.h"
+#include "tools/study_progress.h"
 
 namespace dmf::tools {
 namespace {
@@ -22,48 +22,60 @@ struct Run {
   std::uint64_t seed;
 };
 
-ResultRow do_run(const Run& run, std::size_t columns) {
-  const double start = thread_seconds();
-  ResultRow row;
-  try {
-    row = run.of->run(run.seed);
-  } catch (const engine::Instability& problem) {
-    fmt::print(stderr, "{}: {}\n", run.key, problem.what());
-    row = std::vector<double>(columns, NAN);
+/// What a run has given, on its way from the process that did it.
+struct Outcome {
+  std::vector<double> values;
+  double computing = 0;        ///< s
+  std::vector<char> unstable;  ///< why there are no values: what engine::Instability says
+
+  void archive(engine::Archive& archive) {
+    archive(values);
+    archive(computing);
+    archive(unstable);
   }
-  row.computing += thread_seconds() - start;
-  row.engine = engine_commit();
-  return row;
+};
+
+Outcome do_run(const Run& run, std::size_t columns) {
+  const double start = thread_seconds();
+  Outcome outcome;
+  try {
+    const ResultRow row = run.of->run(run.seed);
+    outcome.values = row.values;
+    outcome.computing = row.computing;
+  } catch (const engine::Instability& problem) {
+    const std::string why = problem.what();
+    outcome.unstable.assign(why.begin(), why.end());
+    outcome.values.assign(columns, NAN);
+  }
+  outcome.computing += thread_seconds() - start;
+  return outcome;
 }
 
 void do_runs(const std::string& study, const std::vector<Run>& runs, int at_a_time, ResultTable& table) {
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto start = std::chrono::steady_clock::now();
-  const auto worker = [&] {
-    for (std::size_t k = next++; k < runs.size(); k = next++) {
-      try {
-        table.add(runs[k].key, do_run(runs[k], table.columns().size()));
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = runs.size();
-        return;
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++done;
-      const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      fmt::print(stderr, "{}: {} of {} done, {:.0f} s, about {:.0f} s left ({})\n", study, done, runs.size(),
-                 elapsed, elapsed / static_cast<double>(done) * static_cast<double>(runs.size() - done),
-                 runs[k].key);
-    }
+  StudyProgress progress(study, runs.size());
+  Works works;
+  works.count = runs.size();
+  works.at_a_time = at_a_time;
+  works.name = [&runs](std::size_t which) { return runs[which].key; };
+  works.work = [&runs, &table](std::size_t which) {
+    engine::Archive archive;
+    do_run(runs[which], table.columns().size()).archive(archive);
+    return archive.take();
   };
-  std::vector<std::thread> threads;
-  for (int k = 0; k < at_a_time; ++k) threads.emplace_back(worker);
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
+  works.answered = [&](std::size_t which, const std::string& answer) {
+    Outcome outcome;
+    engine::Archive archive(answer);
+    outcome.archive(archive);
+    ResultRow row = outcome.values;
+    row.computing = outcome.computing;
+    row.engine = engine_commit();
+    table.add(runs[which].key, row);
+    const std::string unstable(outcome.unstable.begin(), outcome.unstable.end());
+    progress.say(fmt::format("{}: {}", runs[which].key,
+                             unstable.empty() ? "done in " + duration_text(row.computing) : unstable));
+  };
+  works.watch = [&progress](const WorkDone& done) { progress.show(done); };
+  run_in_processes(works);
 }
 
 }  // namespace

@@ -45,11 +45,11 @@ class Results {
   std::vector<std::string> wanted_;
 };
 
-/// Runs every case with `options.seeds` seeds, one seed of everything first, `options.jobs` at a time, and
-/// leaves a line a run in options.output/STUDY_runs.csv: what is there already is not run again. Progress
-/// with time left goes to standard error. With options.recorded nothing is run. An exception of a run ends
-/// the study after the running ones and is thrown again.
-/// @throws std::runtime_error when --only names no case.
+/// Runs every case with `options.seeds` seeds, one seed of everything first, `options.jobs` at a time, each
+/// in a process of its own, and leaves a line a run in options.output/STUDY_runs.csv: what is there already
+/// is not run again. Progress with time left goes to standard error. With options.recorded nothing is run.
+/// @throws std::runtime_error when --only names no case; after the running ones when a run has thrown or
+/// crashed.
 Results run_cases(const std::string& study, const std::vector<std::string>& columns,
                   const std::vector<Case>& cases, const StudyOptions& options, int first_seed = 1);
 

@@ -16,7 +16,12 @@ void report(const Study& study, const StudyOptions& options) {
   const Findings findings = study.run(options);
   fmt::print("{}: {}\n{}", study.name, study.about, as_text(findings));
   write_findings(study.name, findings, options);
-  fmt::print("written: {}/{}.csv\n", options.output, study.name);
+  const std::string written = fmt::format("{}/{}", options.output, study.name);
+  // Of what is recorded the figure may be drawn from more than stands there: it is left as it is.
+  if (options.recorded || !draw_figure(study.name, options))
+    fmt::print("written: {}.csv\n", written);
+  else
+    fmt::print("written: {0}.csv, {0}.png\n", written);
 }
 
 /// The table of docs/validation.md, of what is recorded in a folder.
@@ -78,7 +83,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "some cases, by name or by value: R=5 or 5")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--out", options.output, "folder for CSV files")->capture_default_str();
+  app.add_option("--out", options.output, "folder for CSV files and the figure")->capture_default_str();
   app.add_flag("--quick", options.quick, "short runs that show that it works");
   app.add_flag("--recorded", options.recorded, "run nothing, report what is recorded in --out");
   CLI11_PARSE(app, argc, argv);

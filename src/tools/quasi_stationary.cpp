@@ -10,6 +10,7 @@
 #include "engine/archive.h"
 #include "engine/simulation.h"
 #include "tools/largest_droplet.h"
+#include "tools/processes.h"
 #include "tools/saved_run.h"
 
 namespace dmf::tools {
@@ -97,6 +98,18 @@ class Run {
 
   bool over() const { return course_.phase == Phase::over || course_.phase == Phase::lost; }
   const engine::Simulation& simulation() const { return simulation_; }
+
+  /// How much of it is over, 0 to 1, if the droplet picks the microparticle up now.
+  double share_done() const {
+    const double time = simulation_.time(), elapsed = time - course_.phase_start;
+    double left = how_.measure;
+    if (course_.phase == Phase::measure) left -= elapsed;
+    if (course_.phase < Phase::measure) left += how_.settle;
+    if (course_.phase == Phase::settle) left -= elapsed;
+    if (course_.phase < Phase::settle) left += std::abs(how_.place - course_.place) / how_.slide;
+    if (course_.phase == Phase::rest) left += scene_.settle_time - time;
+    return over() ? 1 : time / (time + left);
+  }
 
   /// To the next look of the tracker.
   void advance() {
@@ -270,6 +283,7 @@ QuasiStationary run_quasi_stationary(const chip::Scene& scene, std::uint64_t see
   SavedRun saved(how.folder, how.key, how.save_every);
   if (const auto state = saved.load()) run.restore(*state);
   while (!run.over()) {
+    tell_share_done(run.share_done());
     run.advance();
     if (how.after_look) how.after_look(run.simulation().time());
     if (saved.due() && !run.over()) saved.save(run.state(), seed, run.simulation().steps());

@@ -1,8 +1,12 @@
 #include "tools/study.h"
 
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 
@@ -140,6 +144,23 @@ const std::vector<Study>& all_studies() {
 
 void write_findings(const std::string& study, const Findings& findings, const StudyOptions& options) {
   replace_file(fmt::format("{}/{}.csv", options.output, study), as_csv(findings));
+}
+
+bool draw_figure(const std::string& study, const StudyOptions& options) {
+  std::error_code ignored;
+  std::string scripts = std::filesystem::is_directory(DMF_SOURCE_SCRIPTS_DIR, ignored)
+                            ? DMF_SOURCE_SCRIPTS_DIR
+                            : DMF_INSTALL_SCRIPTS_DIR;
+  // -B: leaves nothing beside the script.
+  std::array<std::string, 5> words{"/usr/bin/python3", "-B", scripts + "/plot_study.py", study,
+                                   options.output};
+  std::array<char*, words.size() + 1> arguments{};
+  std::transform(words.begin(), words.end(), arguments.begin(),
+                 [](std::string& word) { return word.data(); });
+  pid_t process = 0;
+  int status = 1;
+  return posix_spawn(&process, words[0].c_str(), nullptr, nullptr, arguments.data(), environ) == 0 &&
+         waitpid(process, &status, 0) == process && status == 0;
 }
 
 }  // namespace dmf::tools

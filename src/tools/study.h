@@ -14,7 +14,7 @@ namespace dmf::tools {
 /// What every study is told on the command line.
 struct StudyOptions {
   int seeds = 3;          ///< 1 .. seeds
-  int jobs = 1;           ///< runs at a time, each on one thread
+  int jobs = 1;           ///< runs at a time, each a process with one thread
   bool quick = false;     ///< a short form: shows that it works, not what the number is
   bool recorded = false;  ///< nothing is run: what stands in the folder's CSV files is reported
   double radius = 0;      ///< of the droplet, r_c; 0: the study's own
@@ -65,6 +65,9 @@ struct Study {
 const std::vector<Study>& all_studies();
 /// What a study has found, as NAME.csv in options.output.
 void write_findings(const std::string& study, const Findings& findings, const StudyOptions& options);
+/// Draws that, with the paper's numbers beside, as NAME.png in options.output: scripts/plot_study.py does,
+/// which says on standard error why when it can't. @returns whether it could.
+bool draw_figure(const std::string& study, const StudyOptions& options);
 
 /// A_lw -> angle: makes the calibration file.
 Findings study_contact_angle(const StudyOptions& options);

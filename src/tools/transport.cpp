@@ -12,6 +12,7 @@
 #include "chip/experiment.h"
 #include "engine/archive.h"
 #include "tools/largest_droplet.h"
+#include "tools/processes.h"
 #include "tools/saved_run.h"
 
 namespace dmf::tools {
@@ -143,9 +144,12 @@ class Course {
   }
 
   void add(const TransportRecord& record) {
+    if (bodies_.empty()) start_ = record.time;
     time_ = record.time;
     Body& body = bodies_[record.microparticle];
     const double x = record.microparticle > 0 ? record.x : record.droplet_x;
+    if (std::isnan(body.start)) body.start = x;
+    body.x = x;
     body.arrived = body.arrived || x >= run_.goal;
     body.behind = record.droplet_x - record.x;
     // The largest droplet is the one that travels: a satellite that stays with the microparticle carries
@@ -173,15 +177,27 @@ class Course {
     return arrived || missed || (!carried && time_ >= last_drop_off + run_.after_drop_off);
   }
 
+  /// How much of it is over at least, 0 to 1: by the clock, or by the way of the slowest.
+  double share_done() const {
+    if (bodies_.empty()) return 0;
+    double way = 1;
+    for (const auto& [id, body] : bodies_) {
+      const double part = body.arrived ? 1 : (body.x - body.start) / (run_.goal - body.start);
+      way = std::min(way, part > 0 ? part : 0);  // not a number while there is no droplet
+    }
+    return std::clamp((time_ - start_) / (run_.limit - start_), way, 1.0);
+  }
+
  private:
   struct Body {
     bool arrived = false, carried = false;
-    double behind = NAN;       ///< the droplet, r_c
-    double dropped_off = NAN;  ///< time, until the droplet has it again
+    double start = NAN, x = NAN;  ///< at the first look and now, r_c
+    double behind = NAN;          ///< the droplet, r_c
+    double dropped_off = NAN;     ///< time, until the droplet has it again
   };
   const TransportRun& run_;
   bool ever_picked_up_ = false;
-  double time_ = -std::numeric_limits<double>::infinity();
+  double start_ = 0, time_ = -std::numeric_limits<double>::infinity();
   std::map<double, Body> bodies_;  ///< by id
 };
 
@@ -241,6 +257,7 @@ Transport run_transport(const chip::Scene& scene, std::uint64_t seed, const Tran
   const auto steps_between =
       static_cast<std::uint64_t>(std::max(1.0, std::round(run.record_every / scene.parameters.time_step)));
   while (!course.over()) {
+    tell_share_done(course.share_done());
     do experiment.step();
     while (experiment.steps() % steps_between != 0);
     for (const TransportRecord& record : recorder.look()) {

@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "engine/simulation.h"
+#include "refusal.h"
 #include "tools/cases.h"
 #include "tools/saved_run.h"
+#include "tools/study_progress.h"
 
 namespace dmf::tools {
 namespace {
@@ -56,42 +60,96 @@ StudyOptions in_empty_folder(const std::string& name) {
   return options;
 }
 
+/// What an action throws says; empty when it throws nothing.
+template <typename Action>
+std::string failure_of(const Action& action) {
+  try {
+    action();
+  } catch (const std::runtime_error& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+/// Says in a file which runs were begun: they are done in processes of their own.
+class Begun {
+ public:
+  explicit Begun(const StudyOptions& options) : file_(options.output + "/begun") {
+    std::filesystem::create_directories(options.output);
+  }
+  void add(const std::string& what) const { std::ofstream(file_, std::ios::app) << what + "\n"; }
+  int count() const {
+    std::ifstream in(file_);
+    return static_cast<int>(std::count(std::istreambuf_iterator<char>(in), {}, '\n'));
+  }
+
+ private:
+  std::string file_;
+};
+
 TEST(Cases, EveryRunIsDoneOnceWhateverStoppedTheStudy) {
   StudyOptions options = in_empty_folder("once");
   options.jobs = 2;
-  std::atomic<int> runs{0};
+  const Begun begun(options);
+  bool fails = true;
   const auto tens = [&](int ten) {
-    return Case{"R=" + std::to_string(ten), [&runs, ten](std::uint64_t seed) {
-                  ++runs;
-                  if (ten == 6 && seed == 3 && runs < 7) throw std::runtime_error("killed");
+    return Case{"R=" + std::to_string(ten), [&, ten](std::uint64_t seed) {
+                  begun.add(std::to_string(ten) + " " + std::to_string(seed));
+                  if (ten == 6 && seed == 2 && fails) throw std::runtime_error("not like this");
                   return std::vector<double>{10.0 * ten + static_cast<double>(seed), 0};
                 }};
   };
   const auto study = [&] { return run_cases("tens", {"value", "zero"}, {tens(5), tens(6)}, options); };
-  EXPECT_THROW(study(), std::runtime_error) << "what a run throws is told";
-  const int before = runs;
-  EXPECT_LE(before, 6);
+  EXPECT_TRUE(holds(failure_of(study), "R=6 seed=2: not like this")) << "what a run throws is told";
+  EXPECT_LE(begun.count(), 5) << "none is begun after that";
+  fails = false;
   const Results results = study();
   EXPECT_EQ(results.of("R=5", "value"), (std::vector<double>{51, 52, 53}));
   EXPECT_EQ(results.of("R=6", "value"), (std::vector<double>{61, 62, 63}));
-  EXPECT_EQ(runs - before, 7 - before) << "the killed one again, all others once";
+  EXPECT_EQ(begun.count(), 7) << "the failed one again, all others once";
   study();
-  EXPECT_EQ(runs, 7);
+  EXPECT_EQ(begun.count(), 7);
   EXPECT_EQ(results.mean("R=6", "value").mean, 62);
   EXPECT_EQ(results.finding("R=6", "value", "", 0).engine, std::vector<std::string>{engine_commit()});
   EXPECT_GE(results.finding("R=6", "value", "", 0).computing, 0);
 }
 
+TEST(Cases, ARunThatCrashesLosesNoOther) {
+  StudyOptions options = in_empty_folder("crash");
+  options.jobs = 2;
+  const auto study = [&](bool crash) {
+    return run_cases("crash", {"value"},
+                     {{"",
+                       [crash](std::uint64_t seed) {
+                         if (crash && seed == 1) raise(SIGKILL);
+                         return std::vector<double>{static_cast<double>(seed)};
+                       }}},
+                     options);
+  };
+  EXPECT_TRUE(holds(failure_of([&] { study(true); }), "scene seed=1: ended by signal 9"));
+  options.recorded = true;
+  EXPECT_EQ(study(false).of("", "value"), (std::vector<double>{2})) << "the one beside it";
+  options.recorded = false;
+  EXPECT_EQ(study(false).of("", "value"), (std::vector<double>{1, 2, 3}));
+}
+
+TEST(StudyProgress, TimeLeftFollowsFromWhatWasDoneThisTime) {
+  // Three of 12 were there when the study was taken up again, and half of a fourth.
+  EXPECT_EQ(progress_text("pickup", 12, {6, 2.5}, 1500),
+            "pickup [############............] 6.0 of 12 runs, 25 min, about 60 min left");
+  EXPECT_EQ(progress_text("pickup", 12, {0.5, 0}, 45),
+            "pickup [#.......................] 0.5 of 12 runs, 45 s")
+      << "nothing is known yet";
+  EXPECT_EQ(progress_text("pickup", 2, {2, 2}, 12000),
+            "pickup [########################] 2.0 of 2 runs, 3 h 20 min, about 0 s left");
+}
+
 TEST(Cases, RecordedRunsNothingAndLeavesNothing) {
   StudyOptions options = in_empty_folder("recorded");
   options.recorded = true;
-  const auto results = run_cases("none", {"value"},
-                                 {{"R=5",
-                                   [](std::uint64_t) -> std::vector<double> {
-                                     ADD_FAILURE() << "was run";
-                                     return {1};
-                                   }}},
-                                 options);
+  const auto results = run_cases(
+      "none", {"value"},
+      {{"R=5", [](std::uint64_t) -> std::vector<double> { throw std::runtime_error("was run"); }}}, options);
   EXPECT_TRUE(results.of("R=5", "value").empty());
   EXPECT_FALSE(std::filesystem::exists(options.output));
 }
