@@ -137,10 +137,11 @@ PLATES = {"dropoff_size": ([-40, 40], [150, 40]), "passive_delivery": ([-40, -20
 def plot_holding_force(folder):
     figure, axis = plt.subplots(figsize=(7, 5), constrained_layout=True)
     for (name, (places, plate)), style in zip(PLATES.items(), ("s", "^")):
-        lost = [(np.interp(float(run["dropped_off_x"]), places, plate), force)
-                for run, force in runs_with(folder, name, "held_with")]
-        if lost:
-            axis.plot(*zip(*lost), style, label="lost on its way (%s)" % name)
+        for contact, fill in (("", "full"), (", contact: coulomb", "none")):
+            lost = [(np.interp(float(run["dropped_off_x"]), places, plate), force)
+                    for run, force in runs_with(folder, name, "held_with") if ("coulomb" in run["run"]) == bool(contact)]
+            if lost:
+                axis.plot(*zip(*lost), style, fillstyle=fill, label="lost on its way (%s%s)" % (name, contact))
     with open(os.path.join(folder, "holding_force_runs.csv"), newline="") as file:
         for row in csv.DictReader(file):
             angle = float(re.search(r"theta=([\d.]+)", row["run"]).group(1))
