@@ -47,7 +47,7 @@ Shares shared_memory(std::size_t count) {
   return {static_cast<Share*>(memory), Unmap{count}};
 }
 
-enum ExitStatus { answered = 0, threw = 1, not_told = 2 };
+enum ExitStatus { worked = 0, threw = 1, not_told = 2 };
 
 void write_all(int file, const std::string& text) {
   for (std::size_t written = 0; written < text.size();) {
@@ -62,7 +62,7 @@ void write_all(int file, const std::string& text) {
 [[noreturn]] void do_work(const Works& works, std::size_t which, pid_t parent, int answer_to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(not_told);
-  ExitStatus status = answered;
+  ExitStatus status = worked;
   std::string answer;
   try {
     answer = works.work(which);
@@ -151,7 +151,7 @@ class Processes {
     int status = 0;
     while (waitpid(process.id, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == answered) {
+    if (WIFEXITED(status) && WEXITSTATUS(status) == worked) {
       shares_[process.which].latest = 1;
       works_.answered(process.which, process.text);
     } else if (failure_.empty())
@@ -159,8 +159,9 @@ class Processes {
   }
 
   static std::string failure_of(const Process& process, int status) {
-    if (!WIFSIGNALED(status)) return process.text;
-    return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    if (WIFSIGNALED(status))
+      return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    return process.text.empty() ? "ended without an answer" : process.text;
   }
 
   WorkDone done() const {
