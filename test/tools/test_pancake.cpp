@@ -1,9 +1,10 @@
 #include "tools/pancake.h"
-#include "yaml/units.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "yaml/units.h"
 
 namespace dmf::tools {
 namespace {

@@ -1,6 +1,5 @@
 #include "tools/processes.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/wait.h>
