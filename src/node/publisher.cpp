@@ -78,7 +78,9 @@ void Publisher::stop() {
 
 void Publisher::loop() {
   Outbox::Delivery delivery;
-  while (!stopping_) {
+  bool last = false;
+  while (!last) {
+    last = stopping_;  // read before the outbox, so that what the engine left in it last is published too
     engine_.want_beads(particles_.getNumSubscribers() + markers_.getNumSubscribers() > 0);
     engine_.want_capacitance(capacitance_.getNumSubscribers());
     if (engine_.outbox().take(delivery, kPatience)) publish(delivery);

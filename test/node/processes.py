@@ -53,6 +53,18 @@ def wait_until_recorded(client):
         time.sleep(0.1)
 
 
+def wait_until_written(bag, text):
+    """The recorder has written a text into its bag: what is still on its way to a recorder that ends is lost."""
+    until = time.monotonic() + 60 * PATIENCE
+    while True:
+        with open(bag + ".active", "rb") as file:
+            if text.encode() in file.read():
+                return
+        if time.monotonic() > until:
+            raise AssertionError(f"{text} was never recorded")
+        time.sleep(0.1)
+
+
 def resimulate(*arguments):
     """Exit status and text. There are no scenes, calibrations and boards for it but those of the bag."""
     done = subprocess.run(["rosrun", "dmf_sim", "resimulate", *arguments], capture_output=True, text=True, timeout=100,

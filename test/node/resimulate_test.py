@@ -18,7 +18,7 @@ from dmf_sim.msg import ChipState
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from chip_client import PATIENCE, Chip, Listener  # noqa: E402
-from processes import ROOT, chip, recorder, resimulate, wait_until_recorded  # noqa: E402
+from processes import ROOT, chip, recorder, resimulate, wait_until_recorded, wait_until_written  # noqa: E402
 
 RC = 1e-5  # m, one r_c of the test's scene
 
@@ -71,7 +71,7 @@ def command_everything(client):
     client.step(55)
     accept(client.remove(0, body.microparticle))
     accept(client.set_electrodes([0]))
-    client.step(105)
+    client.step(115)  # to a step with a hash, the last in the record
 
 
 class ResimulateTest(unittest.TestCase):
@@ -89,6 +89,7 @@ class ResimulateTest(unittest.TestCase):
         record = recorder(cls.bag)
         wait_until_recorded(client)
         command_everything(client)
+        wait_until_written(cls.bag, client.hash())
         record.stop()
         node.stop()
         os.remove(scene)
